@@ -1,0 +1,22 @@
+//! Modules: what a compiler writes and a machine runs.
+//!
+//! [`module`] is the data, [`codec`] its bytes, [`builder`] how code is put together, [`text`] the
+//! assembler and disassembler, [`verify`] what a machine may rely on. Knows nothing of source
+//! languages, tapes or robots.
+
+pub mod builder;
+pub mod codec;
+pub mod module;
+pub mod text;
+pub mod verify;
+mod wire;
+
+pub use builder::{CodeBuilder, Mark};
+pub use codec::{DecodeError, DecodeErrorKind, decode, encode, fingerprint};
+pub use module::{
+    ActionKind, Constant, Continuation, Depth, ErrorDeclaration, Extent, Function, FunctionKind,
+    Item, Keyframe, Module, Otherwise, Recovery, Respond, Reversal, Severity, SourceEntry,
+    SourceFile, Variable,
+};
+pub use text::{AsmError, assemble, disassemble};
+pub use verify::{Verified, VerifyError, verify};

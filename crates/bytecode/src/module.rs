@@ -1,0 +1,330 @@
+//! A module as data: tables, functions, code, and the map back to the source.
+//!
+//! Indices are into the tables of the same module; [`verify`](crate::verify) says what must hold of
+//! them. Lengths are metres, angles radians, times seconds.
+
+use obverse_isa::{Instr, Type};
+use serde::{Deserialize, Serialize};
+
+/// A compiled program.
+#[derive(Clone, Debug, PartialEq, Default, Serialize, Deserialize)]
+pub struct Module {
+    /// The source files, so that positions can be shown wherever the module goes.
+    pub sources: Vec<SourceFile>,
+    /// The workcell file as the program names it, relative to the program.
+    pub cell: Option<String>,
+    /// Numbers.
+    pub constants: Vec<Constant>,
+    /// Joint configurations by name.
+    pub joints: Vec<(String, [f64; 6])>,
+    /// Items by name, with the keyframes they have.
+    pub items: Vec<Item>,
+    /// The names of keyframes.
+    pub keyframes: Vec<String>,
+    /// The names of tools.
+    pub tools: Vec<String>,
+    /// The errors that the program declares.
+    pub errors: Vec<ErrorDeclaration>,
+    /// The names of checkpoints.
+    pub checkpoints: Vec<String>,
+    /// Reasons in the programmer's words.
+    pub reasons: Vec<String>,
+    /// Variables of the program.
+    pub globals: Vec<Variable>,
+    /// Functions in the order of their code; the first is where the program starts.
+    pub functions: Vec<Function>,
+    /// Everything that runs.
+    #[serde(with = "crate::wire::code")]
+    pub code: Vec<Instr>,
+    /// From instructions to the source, by ascending first instruction.
+    pub source_map: Vec<SourceEntry>,
+}
+
+/// A source file.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct SourceFile {
+    /// Its name as given to the compiler.
+    pub name: String,
+    /// Its text.
+    pub text: String,
+}
+
+/// A number.
+#[derive(Clone, Copy, Debug, Serialize, Deserialize)]
+pub enum Constant {
+    /// An integer.
+    Int(i64),
+    /// A real; compared by its bits.
+    Real(f64),
+}
+
+impl PartialEq for Constant {
+    fn eq(&self, other: &Self) -> bool {
+        match (self, other) {
+            (Self::Int(a), Self::Int(b)) => a == b,
+            (Self::Real(a), Self::Real(b)) => a.to_bits() == b.to_bits(),
+            _ => false,
+        }
+    }
+}
+
+impl Constant {
+    /// Its type.
+    #[must_use]
+    pub fn of_type(self) -> Type {
+        match self {
+            Self::Int(_) => Type::Int,
+            Self::Real(_) => Type::Real,
+        }
+    }
+
+    /// Its bits as a value of the machine.
+    #[must_use]
+    pub fn bits(self) -> u64 {
+        match self {
+            Self::Int(value) => value.cast_unsigned(),
+            Self::Real(value) => value.to_bits(),
+        }
+    }
+}
+
+/// An item of the workcell.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Item {
+    /// Its name, also in the workcell.
+    pub name: String,
+    /// Its keyframes, at most one of a name.
+    pub keyframes: Vec<Keyframe>,
+}
+
+/// A pose of the tool centre point in an item's frame.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Keyframe {
+    /// The name, as an index into the module's keyframe names.
+    pub name: u16,
+    /// x, y, z in metres.
+    pub position_m: [f64; 3],
+    /// Axis times angle, in radians.
+    pub rotation_rad: [f64; 3],
+}
+
+/// A variable of the program or of a function; all begin as zero bits.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Variable {
+    /// Its name; hidden variables begin with `$`.
+    pub name: String,
+    /// Its type.
+    #[serde(with = "crate::wire::value_type")]
+    pub of_type: Type,
+}
+
+/// A function: a sequence, an action, an I/O operation, an advanced move, or the start.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Function {
+    /// Its name.
+    pub name: String,
+    /// What it was in the source.
+    pub kind: FunctionKind,
+    /// How many of the locals are parameters, from the first.
+    pub parameters: u8,
+    /// Its local variables, at most 256.
+    pub locals: Vec<Variable>,
+    /// How many loop counters it has.
+    pub counters: u8,
+    /// The names of the positions it can remember.
+    pub slots: Vec<String>,
+    /// Its first instruction.
+    pub first: u32,
+    /// One past its last instruction.
+    pub end: u32,
+}
+
+/// What a function was in the source.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub enum FunctionKind {
+    /// Sets the program's variables to their first values, calls the main sequence, and halts.
+    Start,
+    /// A sequence.
+    Sequence,
+    /// An action.
+    Action,
+    /// An I/O operation.
+    Io,
+    /// An advanced move.
+    AdvancedMove,
+    /// A block that takes another one's place in reverse.
+    Replacement,
+}
+
+/// Where a row of instructions comes from: from `first` up to the next entry's.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct SourceEntry {
+    /// The first instruction.
+    pub first: u32,
+    /// Which source file.
+    pub file: u16,
+    /// The first byte in it.
+    pub start: u32,
+    /// One past the last byte.
+    pub end: u32,
+    /// What begins here, if it is an action of the robot that a story tells and a recovery counts.
+    pub action: Option<ActionKind>,
+}
+
+/// The kinds of action, in the words of a story.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub enum ActionKind {
+    /// A move.
+    Move,
+    /// An advanced move.
+    Advance,
+    /// A call of a sequence or an action.
+    Call,
+    /// An I/O operation.
+    Io,
+    /// A primitive outside an I/O operation.
+    Primitive,
+    /// A wait.
+    Wait,
+}
+
+/// An error that the program declares.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct ErrorDeclaration {
+    /// Its name.
+    pub name: String,
+    /// How bad it is.
+    pub severity: Severity,
+    /// How it is recovered from.
+    pub recovery: Recovery,
+    /// What follows when recovering has been given up.
+    pub otherwise: Otherwise,
+    /// When it is responded to.
+    pub respond: Respond,
+    /// How the program goes on afterwards.
+    pub continuation: Continuation,
+}
+
+/// How bad an error is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub enum Severity {
+    /// It is noted, and the program goes on.
+    Warning,
+    /// Its recovery is tried.
+    Recoverable,
+    /// The program stops.
+    Fatal,
+}
+
+/// How an error is recovered from.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub enum Recovery {
+    /// Not at all: what `otherwise` says follows at once.
+    None,
+    /// By a function, which the code itself calls.
+    Using(u16),
+    /// By reversal.
+    Reversing(Reversal),
+}
+
+/// A policy of recovery by reversal.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Reversal {
+    /// How the depth changes from one attempt to the next.
+    pub depth: Depth,
+    /// How far it may go.
+    pub extent: Extent,
+    /// The largest sideways offset of the failed motion on the way forward again, in metres.
+    pub perturbation_m: Option<f64>,
+    /// Whether it goes forward again slower.
+    pub slower: bool,
+    /// Whether it goes forward again with less force.
+    pub lighter: bool,
+}
+
+/// How the depth of a reversal changes from one attempt to the next.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub enum Depth {
+    /// It does not.
+    Fixed,
+    /// Further each time the same error comes from the same place.
+    Escalating,
+    /// As far as experience says.
+    Learned,
+}
+
+/// The bound of a reversal.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub enum Extent {
+    /// So many actions.
+    Actions(u32),
+    /// To a checkpoint.
+    Checkpoint(u16),
+    /// To the start of the sequence.
+    Sequence,
+}
+
+/// What follows when recovering has been given up.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub enum Otherwise {
+    /// A function, which the code itself calls.
+    Using(u16),
+    /// A person is called.
+    Operator,
+    /// The program stops.
+    Stop,
+}
+
+/// When an error is responded to.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub enum Respond {
+    /// At once.
+    AtOnce,
+    /// After the action that raised it.
+    AfterAction,
+    /// After the sequence that raised it.
+    AfterSequence,
+}
+
+/// How the program goes on after a recovery.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub enum Continuation {
+    /// The action again.
+    Action,
+    /// The next action.
+    NextAction,
+    /// The sequence again.
+    Sequence,
+    /// The program again.
+    Program,
+    /// Not at all.
+    Stop,
+}
+
+impl Module {
+    /// The function that an instruction belongs to, as an index.
+    #[must_use]
+    pub fn function_at(&self, pc: u32) -> Option<usize> {
+        let after = self.functions.partition_point(|function| function.first <= pc);
+        let index = after.checked_sub(1)?;
+        (pc < self.functions[index].end).then_some(index)
+    }
+
+    /// The source entry that an instruction belongs to.
+    #[must_use]
+    pub fn source_at(&self, pc: u32) -> Option<&SourceEntry> {
+        let after = self.source_map.partition_point(|entry| entry.first <= pc);
+        self.source_map.get(after.checked_sub(1)?)
+    }
+
+    /// The line and column, from 1, of an instruction's source, with the file's name.
+    #[must_use]
+    pub fn place_of(&self, pc: u32) -> Option<(&str, usize, usize)> {
+        let entry = self.source_at(pc)?;
+        let file = self.sources.get(usize::from(entry.file))?;
+        let before = file.text.get(..entry.start as usize)?;
+        let line = before.bytes().filter(|&byte| byte == b'\n').count() + 1;
+        let column = before.chars().rev().take_while(|&c| c != '\n').count() + 1;
+        Some((&file.name, line, column))
+    }
+}

@@ -1,0 +1,66 @@
+//! Assembly text: a module for people to read, and to write by hand.
+//!
+//! [`disassemble`] writes everything that a module holds, and [`assemble`] reads it back: the same
+//! module, byte for byte, verified or not. Neither knows what instructions do; both derive what they
+//! write and accept from the instruction table. Whatever the text or the module, neither panics, and
+//! the memory they take is linear in what they are given.
+//!
+//! ```text
+//! obvasm 1                               the first line
+//! .cell "FILE"                           the workcell file
+//! .const int 5   .const real 0.25        a number; `0x` and 16 digits are the bits of a real
+//! .joints "NAME" 0 0 0 0 0 0             radians
+//! .keyframe "NAME"
+//! .item "NAME"
+//!     .at KEYFRAME x y z rx ry rz        metres; axis times angle
+//! .tool "NAME"
+//! .error "NAME" SEVERITY                 warning, recoverable, fatal
+//!     .recover none | using FUNCTION | reversing DEPTH EXTENT [perturbed METRES] [slower] [lighter]
+//!     .otherwise using FUNCTION | operator | stop
+//!     .respond at_once | after_action | after_sequence
+//!     .then action | next_action | sequence | program | stop
+//! .checkpoint "NAME"
+//! .reason "TEXT"
+//! .global "NAME" TYPE
+//! .function "NAME" KIND                  what follows is of this function, to the next one
+//!     .parameter "NAME" TYPE             the parameters come before the other locals
+//!     .local "NAME" TYPE
+//!     .counters N
+//!     .slot "NAME"
+//! label:                                 a name for the next instruction, within the function
+//!   @ FILE START END [ACTION]            what follows comes from these bytes of that source file
+//!         push.int 3                     operands after the mnemonic, with commas between
+//!     store.local x                      an effect: it ends the statement
+//! .source "NAME"
+//! | a line of its text                   `|"..."` with escapes where a line is not plain
+//! ```
+//!
+//! DEPTH is `fixed`, `escalating` or `learned`; EXTENT is `actions N`, `checkpoint NAME` or
+//! `sequence`. A table is in the order of its lines, which may stand anywhere. A name is a word or
+//! quoted text; `#7` is the seventh of a table, counted from nought, whatever its name, and `x#7` the
+//! same with its name. `push.const 0.25` and `barrier "why"` add to their tables what is not yet
+//! there. The `prefix` of an instruction is counted, never written. A join may leave out which jump
+//! it is of if one alone names it. `;` begins a comment.
+//!
+//! Four lines are for modules that the verifier would refuse: `.code` begins code of no function,
+//! `.range FIRST END` says where a function's code is if not below it, `.parameters N` how many there
+//! are if more than locals, `.prefix N` what the next effect takes for its prefix; and `.map FIRST
+//! FILE START END [ACTION]` is an entry of a source map out of order.
+//!
+//! Read `disassemble`, then `assemble` and `resolve`.
+
+mod assemble;
+mod declare;
+mod disassemble;
+mod error;
+mod listing;
+mod names;
+mod nearest;
+mod quote;
+mod resolve;
+mod scan;
+mod words;
+
+pub use assemble::assemble;
+pub use disassemble::{disassemble, disassemble_function, instruction};
+pub use error::{AsmError, MAX_ERRORS};

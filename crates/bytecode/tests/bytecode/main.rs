@@ -1,0 +1,8 @@
+//! The tests of the crate from outside: text, bytes, verifier, builder.
+
+mod builder;
+mod codec;
+mod support;
+mod text;
+mod text_errors;
+mod verifier;

@@ -1,0 +1,153 @@
+//! The frame of the function that is being checked: its locals, hidden ones among them, and what
+//! stands around the statement in hand. Knows nothing of names.
+
+use crate::tree::{Hoist, Layout, MoveResults};
+use obverse_bytecode::Variable;
+use obverse_isa::{FunctionId, JointsId, LocalId, Setting, Type};
+use obverse_syntax::span::Span;
+
+/// How many words a frame has at the most; a local is one, a loop counter three.
+pub(crate) const MAX_SLOTS: usize = 256;
+
+/// What becomes of a reading in an expression.
+#[derive(Clone, Copy, Debug)]
+pub(crate) enum Readings {
+    /// It is taken before the statement.
+    Taken,
+    /// `distance` and `force` are those of the move; others are taken.
+    OfMove(MoveResults),
+    /// It is a mistake, since the expression is an assertion.
+    Asserted,
+    /// It is a mistake, since the value must be known now.
+    Constant,
+}
+
+/// What stands around a statement, from the outside in.
+#[derive(Clone, Copy, Debug)]
+pub(crate) enum Around {
+    /// A loop, and whether a `break` that is reached leaves it.
+    Loop {
+        /// Whether it does.
+        breaks: bool,
+    },
+    /// A block with a reverse of its own.
+    Reversed(Span),
+}
+
+/// The position that the program named last.
+#[derive(Clone, Copy, Debug)]
+pub(crate) enum NamedPosition {
+    /// This configuration.
+    Known(JointsId),
+    /// None, since this came between.
+    Lost(&'static str, Span),
+}
+
+/// What is known of the function that is being checked.
+#[derive(Debug)]
+pub(crate) struct FrameScope {
+    /// Which function it is.
+    pub(crate) function: FunctionId,
+    /// Its name.
+    pub(crate) name: String,
+    /// Its layout so far.
+    pub(crate) layout: Layout,
+    /// Settings that hold to its end.
+    pub(crate) modal: Vec<(Setting, LocalId)>,
+    /// What becomes of readings.
+    pub(crate) readings: Readings,
+    /// What stands around.
+    pub(crate) around: Vec<Around>,
+    /// How many counters are in use.
+    pub(crate) counters: u8,
+    /// The position named last.
+    pub(crate) named: NamedPosition,
+    /// Whether what is being checked is never reached.
+    pub(crate) is_dead: bool,
+    /// Whether a limit has been reported.
+    pub(crate) is_full: bool,
+    /// How many blocks in reverse have been made functions of.
+    pub(crate) replacements: usize,
+    hoists: Vec<Hoist>,
+    busy: Vec<LocalId>,
+    free: Vec<LocalId>,
+    hidden: usize,
+}
+
+impl FrameScope {
+    /// The frame of a function that begins here.
+    pub(crate) fn new(function: FunctionId, name: &str, begins: Span) -> Self {
+        Self {
+            function,
+            name: name.to_owned(),
+            layout: Layout::default(),
+            modal: Vec::new(),
+            readings: Readings::Taken,
+            around: Vec::new(),
+            counters: 0,
+            named: NamedPosition::Lost("the sequence begins here, wherever the arm is", begins),
+            is_dead: false,
+            is_full: false,
+            replacements: 0,
+            hoists: Vec::new(),
+            busy: Vec::new(),
+            free: Vec::new(),
+            hidden: 0,
+        }
+    }
+
+    /// How many words the frame has so far.
+    pub(crate) fn slots(&self) -> usize {
+        self.layout.locals.len() + 3 * usize::from(self.layout.counters)
+    }
+
+    /// A new local; none if there are too many.
+    pub(crate) fn local(&mut self, name: &str, of_type: Type) -> Option<LocalId> {
+        if self.slots() >= MAX_SLOTS {
+            return None;
+        }
+        let local = u8::try_from(self.layout.locals.len()).ok().map(LocalId)?;
+        self.layout.locals.push(Variable { name: name.to_owned(), of_type });
+        Some(local)
+    }
+
+    /// A hidden local that is kept until it is given back.
+    pub(crate) fn hidden(&mut self, of_type: Type) -> Option<LocalId> {
+        let is_fit = |local: &LocalId| self.layout.locals[local.index()].of_type == of_type;
+        if let Some(index) = self.free.iter().position(is_fit) {
+            return Some(self.free.remove(index));
+        }
+        let name = format!("${}", self.hidden);
+        self.hidden += 1;
+        self.local(&name, of_type)
+    }
+
+    /// A hidden local for the statement in hand.
+    pub(crate) fn temporary(&mut self, of_type: Type) -> Option<LocalId> {
+        let local = self.hidden(of_type)?;
+        self.busy.push(local);
+        Some(local)
+    }
+
+    /// Give a hidden local back.
+    pub(crate) fn give_back(&mut self, local: LocalId) {
+        self.free.push(local);
+        self.free.sort_unstable();
+    }
+
+    /// A new statement: the hidden locals of the one before are free again.
+    pub(crate) fn begin_statement(&mut self) {
+        self.free.append(&mut self.busy);
+        self.free.sort_unstable();
+    }
+
+    /// Something to be done before the statement in hand.
+    pub(crate) fn hoist(&mut self, hoist: Hoist) {
+        self.hoists.push(hoist);
+    }
+
+    /// What is to be done before the statement in hand.
+    pub(crate) fn take_hoists(&mut self) -> Vec<Hoist> {
+        std::mem::take(&mut self.hoists)
+    }
+}

@@ -1,0 +1,167 @@
+//! Functions: sequences and actions, I/O operations, blocks in reverse; and the blocks they are of.
+
+use super::Checker;
+use super::frame::FrameScope;
+use super::names::Meaning;
+use crate::report::warning;
+use crate::tree::{Block, Body, Function, Statement};
+use obverse_bytecode::FunctionKind;
+use obverse_isa::{FunctionId, LocalId};
+use obverse_syntax::ast::{self, IoOperation, Name, Sequence};
+use obverse_syntax::codes::Code;
+use obverse_syntax::span::Span;
+
+impl<'s> Checker<'s> {
+    /// `sequence main { … }`, `action pick(part: item) { … }`
+    pub(super) fn check_sequence(
+        &mut self,
+        id: FunctionId,
+        sequence: &Sequence<'s>,
+    ) -> Option<Function> {
+        let kind = if sequence.is_action { FunctionKind::Action } else { FunctionKind::Sequence };
+        let check = |checker: &mut Self| {
+            checker.declare_parameters(id, sequence);
+            Body::Block(checker.block(&sequence.body))
+        };
+        Some(self.function(id, sequence.name, kind, check))
+    }
+
+    fn declare_parameters(&mut self, id: FunctionId, sequence: &Sequence<'s>) {
+        let signature = &self.signatures[id.index()];
+        let types: Vec<_> = signature.parameters.iter().map(|(_, of_type, _)| *of_type).collect();
+        for (parameter, of_type) in sequence.parameters.iter().zip(types) {
+            self.declare_local(parameter.name, of_type);
+            // What a caller must give need not be taken.
+            self.names.mark_used(parameter.name.value);
+        }
+        match u8::try_from(sequence.parameters.len()) {
+            Ok(parameters) => self.frame.layout.parameters = parameters,
+            Err(_) => {
+                let message = "a sequence has at most 255 parameters".to_owned();
+                let at = "this one has more";
+                self.reports.error(Code::TooMany, sequence.name.span, message, at);
+            }
+        }
+    }
+
+    /// `io gripper_open { set 0 low; sleep 0.5 s }`
+    pub(super) fn check_io(&mut self, id: FunctionId, io: &IoOperation<'s>) -> Option<Function> {
+        let check = |checker: &mut Self| {
+            let mut statements: Vec<Statement> = Vec::new();
+            for primitive in &io.primitives {
+                checker.frame.begin_statement();
+                let statement = checker.primitive(primitive, statements.last_mut());
+                statements.extend(statement);
+            }
+            Body::Block(Block { statements, falls_through: true, end: last_byte(io.span) })
+        };
+        Some(self.function(id, io.name, FunctionKind::Io, check))
+    }
+
+    /// The block after `in reverse`, as a function of its own.
+    pub(super) fn replacement(&mut self, block: &ast::Block<'s>, span: Span) -> FunctionId {
+        let id = self.new_function(span);
+        let name = format!("{}$reverse{}", self.frame.name, self.frame.replacements);
+        self.frame.replacements += 1;
+        let outer = self.enter_function(id, &name, span);
+        let body = Body::Block(self.block(block));
+        let function = self.leave_function(outer, FunctionKind::Replacement, span, body);
+        if let Some(slot) = id.index().checked_sub(1).and_then(|at| self.functions.get_mut(at)) {
+            *slot = Some(function);
+        }
+        id
+    }
+
+    /// A function whose body is checked by `check`.
+    pub(super) fn function(
+        &mut self,
+        id: FunctionId,
+        name: Name<'s>,
+        kind: FunctionKind,
+        check: impl FnOnce(&mut Self) -> Body,
+    ) -> Function {
+        let outer = self.enter_function(id, name.value, name.span);
+        let body = check(self);
+        self.leave_function(outer, kind, name.span, body)
+    }
+
+    fn enter_function(&mut self, id: FunctionId, name: &str, named: Span) -> Outer {
+        let frame = std::mem::replace(&mut self.frame, FrameScope::new(id, name, named));
+        Outer { frame, names: self.names.open_frame(), scope: self.names.open() }
+    }
+
+    fn leave_function(
+        &mut self,
+        outer: Outer,
+        kind: FunctionKind,
+        named: Span,
+        body: Body,
+    ) -> Function {
+        self.names.close(&outer.scope);
+        self.names.close_frame(&outer.names);
+        let inner = std::mem::replace(&mut self.frame, outer.frame);
+        Function { name: inner.name, kind, named, layout: inner.layout, modal: inner.modal, body }
+    }
+
+    /// Statements in braces; those that are never reached are checked, warned about and left out.
+    pub(super) fn block(&mut self, block: &ast::Block<'s>) -> Block {
+        let scope = self.names.open();
+        let was_dead = self.frame.is_dead;
+        let mut checked =
+            Block { statements: Vec::new(), falls_through: true, end: last_byte(block.span) };
+        let mut unreached: Option<Span> = None;
+        for written in &block.statements {
+            if !checked.falls_through {
+                self.frame.is_dead = true;
+                unreached = Some(unreached.map_or(written.span, |span| span.to(written.span)));
+            }
+            self.frame.begin_statement();
+            let before = if unreached.is_none() { checked.statements.last_mut() } else { None };
+            let statement = self.statement(written, before);
+            if let Some((statement, falls_through)) = statement
+                && unreached.is_none()
+            {
+                checked.statements.push(statement);
+                checked.falls_through = falls_through;
+            }
+        }
+        self.frame.is_dead = was_dead;
+        self.names.close(&scope);
+        if let Some(span) = unreached
+            && !was_dead
+        {
+            let message = "what follows is never reached";
+            self.reports.add(
+                warning(Code::Unreachable, span, message, "never reached")
+                    .with_help("leave it out"),
+            );
+        }
+        checked
+    }
+
+    /// The parameter of the function in hand that a local is.
+    pub(super) fn parameter(&self, local: LocalId) -> crate::keyframes::Parameter {
+        (self.frame.function, local)
+    }
+
+    /// What is called as a sequence.
+    pub(super) fn callee(&mut self, name: Name<'s>) -> Option<FunctionId> {
+        let is_callable = |meaning| matches!(meaning, Meaning::Sequence(_) | Meaning::Action(_));
+        match self.resolve(name, "a sequence", is_callable)? {
+            Meaning::Sequence(id) | Meaning::Action(id) => Some(id),
+            _ => None,
+        }
+    }
+}
+
+/// What stood around a function while it was checked.
+struct Outer {
+    frame: FrameScope,
+    names: super::names::OuterFrame,
+    scope: super::names::Scope,
+}
+
+/// The closing brace.
+pub(super) fn last_byte(span: Span) -> Span {
+    Span::new(span.end.saturating_sub(1).max(span.start), span.end)
+}

@@ -1,0 +1,321 @@
+//! Advanced moves: their clauses, what stops them, what they do afterwards.
+
+use super::Checker;
+use super::errors::once;
+use super::expression::Need;
+use super::frame::Readings;
+use super::function::last_byte;
+use super::motion::direction;
+use super::names::Meaning;
+use super::operators::binary;
+use super::statement::speed;
+use crate::report::warning;
+use crate::tree::{
+    Aftermath, Body, Expression, ExpressionKind, Function, GuardedMove, MoveResults, MoveSpans,
+    Prepared, Retry,
+};
+use crate::types::ValueType;
+use obverse_bytecode::FunctionKind;
+use obverse_isa::{FunctionId, Instr, ReasonId, SlotId, Type};
+use obverse_syntax::ast::{
+    self, AdvancedMove, Behaviour, BinaryOperator, FrameWord, Heading, MoveClause, SpeedWord,
+};
+use obverse_syntax::codes::Code;
+use obverse_syntax::diagnostic::Diagnostic;
+use obverse_syntax::span::{Span, Spanned};
+
+/// A move that came closer than this to its distance has come all the way, in metres.
+const SHORTFALL_M: f64 = 1e-6;
+/// The sideways offset of a repeated move where none is given, in metres.
+const PERTURBATION_M: f64 = 1e-3;
+/// How often a move is tried again at the most.
+const MAX_TIMES: u64 = 1_000_000;
+
+/// The clause `distance …`.
+type DistanceClause<'a, 's> =
+    (&'a ast::Expression<'s>, Spanned<Heading>, Option<Spanned<FrameWord>>);
+
+/// The clauses of an advanced move by kind, with their places.
+#[derive(Default)]
+struct Clauses<'a, 's> {
+    requires: Option<(&'a ast::Expression<'s>, Span)>,
+    distance: Option<(DistanceClause<'a, 's>, Span)>,
+    stop_if: Option<(&'a ast::Expression<'s>, Span)>,
+    speed: Option<(SpeedWord, Span)>,
+    succeeds_if: Option<(&'a ast::Expression<'s>, Span)>,
+    on_success: Option<(&'a [Spanned<Behaviour<'s>>], Span)>,
+    on_failure: Option<(&'a [Spanned<Behaviour<'s>>], Span)>,
+}
+
+impl<'s> Checker<'s> {
+    /// `advanced move insert_peg { … }`
+    pub(super) fn check_guarded(
+        &mut self,
+        id: FunctionId,
+        written: &AdvancedMove<'s>,
+    ) -> Option<Function> {
+        let clauses = self.gather_move_clauses(&written.clauses);
+        let Some((distance, motion)) = clauses.distance else {
+            let message =
+                format!("the advanced move `{}` does not say how far it goes", written.name.value);
+            let diagnostic = Diagnostic::error(
+                Code::MissingClause,
+                written.name.span,
+                message,
+                "`distance` is missing",
+            )
+            .with_help("write for example `distance 300 mm forward in tcp`");
+            self.reports.add(diagnostic);
+            return None;
+        };
+        let check = |checker: &mut Self| {
+            let end = last_byte(written.span);
+            Body::Guarded(Box::new(checker.guarded(&clauses, distance, motion, end)))
+        };
+        Some(self.function(id, written.name, FunctionKind::AdvancedMove, check))
+    }
+
+    fn gather_move_clauses<'a>(
+        &mut self,
+        written: &'a [Spanned<MoveClause<'s>>],
+    ) -> Clauses<'a, 's> {
+        let mut clauses = Clauses::default();
+        for Spanned { value, span } in written {
+            let span = *span;
+            let first = match value {
+                MoveClause::Requires(condition) => {
+                    ("requires", once(&mut clauses.requires, condition, span))
+                }
+                MoveClause::Distance { distance, heading, frame } => {
+                    let clause = (distance, *heading, *frame);
+                    ("distance", once(&mut clauses.distance, clause, span))
+                }
+                MoveClause::StopIf(condition) => {
+                    ("stop if", once(&mut clauses.stop_if, condition, span))
+                }
+                MoveClause::Speed(word) => ("speed", once(&mut clauses.speed, *word, span)),
+                MoveClause::SucceedsIf(condition) => {
+                    ("succeeds if", once(&mut clauses.succeeds_if, condition, span))
+                }
+                MoveClause::OnSuccess(behaviours) => {
+                    ("on success", once(&mut clauses.on_success, behaviours.as_slice(), span))
+                }
+                MoveClause::OnFailure(behaviours) => {
+                    ("on failure", once(&mut clauses.on_failure, behaviours.as_slice(), span))
+                }
+            };
+            if let (word, Some(first)) = first {
+                self.report_twice(word, span, first);
+            }
+        }
+        clauses
+    }
+
+    fn guarded(
+        &mut self,
+        clauses: &Clauses<'_, 's>,
+        (distance, heading, frame): DistanceClause<'_, 's>,
+        motion: Span,
+        end: Span,
+    ) -> GuardedMove {
+        let requires = clauses.requires.map(|(condition, span)| self.requires(condition, span));
+        let distance = self.move_distance(distance);
+        let (axis, frame) = direction(heading.value, frame);
+        let limit = match clauses.stop_if {
+            Some((condition, span)) => self.force_limit(condition, span),
+            // Nothing pushes harder: the move goes all the way or fails.
+            None => alone(Expression::real(f64::MAX, ValueType::FORCE, motion)),
+        };
+        let speed = clauses.speed.map(|(word, span)| (speed(word), self.hidden(Type::Speed, span)));
+        let results = MoveResults {
+            distance: self.hidden(Type::Real, motion),
+            force: self.hidden(Type::Real, motion),
+        };
+        let (succeeds, succeeds_span) = match clauses.succeeds_if {
+            Some((condition, span)) => (self.succeeds(condition, results), span),
+            None => (came_all_the_way(&distance.value, results, motion), motion),
+        };
+        let (on_success, repeat) = self.aftermath(clauses.on_success);
+        if let Some((_, span)) = repeat {
+            self.report_misplaced_repeat(span, "`on success` has nothing to try again");
+        }
+        let (on_failure, repeat) = self.aftermath(clauses.on_failure);
+        let repeat = repeat.map(|(repeat, span)| self.retry(repeat, span));
+        let returns = on_success.returns.or(on_failure.returns).is_some();
+        let initial = (returns || repeat.is_some()).then(|| {
+            self.frame.layout.slots.push("$initial".to_owned());
+            SlotId(0)
+        });
+        let spans = MoveSpans { motion, succeeds: succeeds_span, end };
+        GuardedMove {
+            requires,
+            distance,
+            axis,
+            frame,
+            limit,
+            speed,
+            results,
+            succeeds,
+            on_success,
+            on_failure,
+            repeat,
+            initial,
+            spans,
+        }
+    }
+
+    fn requires(&mut self, condition: &ast::Expression<'s>, span: Span) -> (Prepared, ReasonId) {
+        let source = self.source;
+        let text = source.get(condition.span.start as usize..condition.span.end as usize);
+        let words: Vec<&str> = text.unwrap_or_default().split_whitespace().collect();
+        let reason = format!("{} requires {}", self.frame.name, words.join(" "));
+        let reason = self.reason(Spanned::new(&reason, span));
+        (self.prepared(condition, &Need::new(ValueType::Bool, "`requires`")), reason)
+    }
+
+    fn move_distance(&mut self, written: &ast::Expression<'s>) -> Prepared {
+        let distance = self.stored(written, &Need::new(ValueType::LENGTH, "`distance`"));
+        if matches!(distance.value.kind, ExpressionKind::Real(metres) if metres <= 0.0) {
+            let message = "an advanced move goes some way; where to, its heading says".to_owned();
+            self.reports.error(Code::OutOfRange, written.span, message, "not more than zero");
+        }
+        distance
+    }
+
+    /// `stop if force > 5 N`: the force.
+    fn force_limit(&mut self, condition: &ast::Expression<'s>, span: Span) -> Prepared {
+        use BinaryOperator::{Greater, GreaterOrEqual, Less, LessOrEqual};
+        use ast::ExpressionKind::{Binary, Force, Missing};
+        let limit = match &condition.kind {
+            Binary { operator: Greater | GreaterOrEqual, left, right }
+                if matches!(left.kind, Force) =>
+            {
+                right
+            }
+            Binary { operator: Less | LessOrEqual, left, right } if matches!(right.kind, Force) => {
+                left
+            }
+            Missing => return alone(Expression::missing(condition.span)),
+            _ => {
+                let message = "a move is stopped by its contact force alone".to_owned();
+                let diagnostic = Diagnostic::error(
+                    Code::StopCondition,
+                    condition.span,
+                    message,
+                    "not a limit of force",
+                )
+                .with_help("write `stop if force > 5 N`; how far it goes is its `distance`");
+                self.reports.add(diagnostic);
+                return alone(Expression::missing(condition.span));
+            }
+        };
+        let limit = self.stored(limit, &Need::new(ValueType::FORCE, "`stop if force >`"));
+        if matches!(limit.value.kind, ExpressionKind::Real(newtons) if newtons < 0.0) {
+            let message = "a force is not negative".to_owned();
+            self.reports.error(Code::OutOfRange, span, message, "stops before it begins");
+        }
+        limit
+    }
+
+    /// A value that is computed once, before the attempts.
+    fn stored(&mut self, written: &ast::Expression<'s>, need: &Need) -> Prepared {
+        let Prepared { hoists, value } = self.prepared(written, need);
+        hoists.into_iter().for_each(|hoist| self.frame.hoist(hoist));
+        let value = self.twice(value);
+        Prepared { hoists: self.frame.take_hoists(), value }
+    }
+
+    fn succeeds(&mut self, condition: &ast::Expression<'s>, results: MoveResults) -> Prepared {
+        self.frame.readings = Readings::OfMove(results);
+        let prepared = self.prepared(condition, &Need::new(ValueType::Bool, "`succeeds if`"));
+        self.frame.readings = Readings::Taken;
+        prepared
+    }
+
+    /// What follows success or failure, and the repetition among it.
+    #[expect(clippy::type_complexity, reason = "a pair of optional parts of the tree")]
+    fn aftermath<'a>(
+        &mut self,
+        behaviours: Option<(&'a [Spanned<Behaviour<'s>>], Span)>,
+    ) -> (Aftermath, Option<((Option<&'a ast::Expression<'s>>, Spanned<u64>), Span)>) {
+        let mut aftermath = Aftermath::default();
+        let mut repeat = None;
+        let behaviours = behaviours.map_or(&[][..], |(behaviours, _)| behaviours);
+        for (index, Spanned { value, span }) in behaviours.iter().enumerate() {
+            match value {
+                Behaviour::ReturnToInitialPosition => aftermath.returns = Some(*span),
+                Behaviour::RepeatWithPerturbation { within, times } => {
+                    if repeat.is_some() {
+                        self.report_misplaced_repeat(*span, "the move is tried again already");
+                    }
+                    repeat = Some(((within.as_ref(), *times), *span));
+                }
+                Behaviour::Throw(name) => {
+                    let is_error = |meaning| matches!(meaning, Meaning::Error(_));
+                    if let Some(Meaning::Error(error)) = self.resolve(*name, "an error", is_error) {
+                        aftermath.throws = Some((error, *span));
+                    }
+                    self.warn_after_throw(&behaviours[index + 1..]);
+                    break;
+                }
+            }
+        }
+        (aftermath, repeat)
+    }
+
+    fn warn_after_throw(&mut self, rest: &[Spanned<Behaviour<'s>>]) {
+        if let (Some(first), Some(last)) = (rest.first(), rest.last()) {
+            let span = first.span.to(last.span);
+            let message = "what follows `throw` is never reached";
+            self.reports.add(
+                warning(Code::Unreachable, span, message, "never reached")
+                    .with_help("put it before `throw`"),
+            );
+        }
+    }
+
+    fn report_misplaced_repeat(&mut self, span: Span, why: &str) {
+        let message = format!("the move cannot be repeated here: {why}");
+        let diagnostic =
+            Diagnostic::error(Code::MisplacedBehaviour, span, message, "cannot stand here")
+                .with_help("`repeat with perturbation` stands once, in `on failure`");
+        self.reports.add(diagnostic);
+    }
+
+    fn retry(
+        &mut self,
+        (within, times): (Option<&ast::Expression<'s>>, Spanned<u64>),
+        span: Span,
+    ) -> Retry {
+        let within = match within {
+            Some(within) => {
+                self.stored(within, &Need::new(ValueType::LENGTH, "`repeat with perturbation`"))
+            }
+            None => alone(Expression::real(PERTURBATION_M, ValueType::LENGTH, span)),
+        };
+        if !(1..=MAX_TIMES).contains(&times.value) {
+            let message = format!("a move is tried again 1 to {MAX_TIMES} times");
+            let at = format!("{} times", times.value);
+            self.reports.error(Code::OutOfRange, times.span, message, &at);
+        }
+        self.frame.layout.counters = 1;
+        let draws = [self.hidden(Type::Real, span), self.hidden(Type::Real, span)];
+        Retry { times: i32::try_from(times.value).unwrap_or(1), within, draws, span }
+    }
+}
+
+/// A value for which nothing is read.
+fn alone(value: Expression) -> Prepared {
+    Prepared { hoists: Vec::new(), value }
+}
+
+/// Whether a move came as far as it should.
+fn came_all_the_way(distance: &Expression, results: MoveResults, span: Span) -> Prepared {
+    if distance.of_type.is_unknown() {
+        return alone(Expression::missing(span));
+    }
+    let shortfall = Expression::real(SHORTFALL_M, ValueType::LENGTH, span);
+    let needed = binary(Instr::RealSub {}, distance.clone(), shortfall, ValueType::LENGTH, span);
+    let came = Expression::local(results.distance, ValueType::LENGTH, span);
+    alone(binary(Instr::RealLe {}, needed, came, ValueType::Bool, span))
+}

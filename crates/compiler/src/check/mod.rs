@@ -1,0 +1,209 @@
+//! Syntax tree to checked tree: names, types, units, structure.
+//!
+//! Declarations come first, in an order that lets each see what it needs; then the bodies. Nothing
+//! is reported twice: what has a mistake is of unknown type, which says nothing more.
+
+mod control;
+mod declarations;
+mod errors;
+mod expression;
+mod frame;
+mod function;
+mod guarded;
+mod motion;
+mod names;
+mod operators;
+mod program;
+mod statement;
+
+use crate::keyframes::KeyframeFlow;
+use crate::report::Reports;
+use crate::tree::{Expression, Function};
+use crate::types::ValueType;
+use frame::FrameScope;
+use names::{Found, Meaning, Names};
+use obverse_bytecode::Module;
+use obverse_isa::{FunctionId, LocalId, Type};
+use obverse_syntax::ast::Name;
+use obverse_syntax::codes::Code;
+use obverse_syntax::diagnostic::Diagnostic;
+use obverse_syntax::span::Span;
+use std::collections::{BTreeSet, HashMap};
+
+pub(crate) use frame::MAX_SLOTS;
+pub(crate) use program::check;
+
+/// What a caller knows of a function.
+#[derive(Clone, Debug, Default)]
+struct Signature {
+    named: Span,
+    parameters: Vec<(String, ValueType, Span)>,
+    counterpart: Option<FunctionId>,
+}
+
+/// The tables whose entries come into being when they are named.
+#[derive(Debug, Default)]
+struct Interned<'s> {
+    keyframes: HashMap<&'s str, u16>,
+    tools: HashMap<&'s str, u16>,
+    checkpoints: HashMap<&'s str, u16>,
+    reasons: HashMap<String, u16>,
+}
+
+/// What has been found out so far.
+struct Checker<'s> {
+    source: &'s str,
+    reports: Reports,
+    names: Names<'s>,
+    module: Module,
+    interned: Interned<'s>,
+    /// By function; the start has none.
+    signatures: Vec<Signature>,
+    /// By function; those of replacements come at the end.
+    functions: Vec<Option<Function>>,
+    first_values: Vec<Expression>,
+    wanted_checkpoints: Vec<Name<'s>>,
+    set_checkpoints: BTreeSet<&'s str>,
+    keyframes: KeyframeFlow,
+    frame: FrameScope,
+    /// The kinds of thing there are too many of, so that each is reported once.
+    full: Vec<&'static str>,
+}
+
+impl<'s> Checker<'s> {
+    /// The index of a further entry of a table that has so many: 65535 at the most.
+    fn index(&mut self, entries: usize, what: &'static str, span: Span) -> u16 {
+        u16::try_from(entries).ok().filter(|index| *index < u16::MAX).unwrap_or_else(|| {
+            if !self.full.contains(&what) {
+                self.full.push(what);
+                let message = format!("a module has at most 65535 {what}");
+                self.reports.error(Code::TooMany, span, message, "this one is too many");
+            }
+            0
+        })
+    }
+
+    /// Declare a name, and report that it has a meaning already.
+    fn declare(&mut self, name: Name<'s>, meaning: Meaning) {
+        let before = self.names.find(name.value);
+        // What is meant by a use of it is not known, so that neither is called unused.
+        self.names.mark_used(name.value);
+        if let Some(first) = self.names.declare(name, meaning) {
+            let kind = match before {
+                Found::Here(symbol) | Found::Outside(symbol) => symbol.meaning.kind(),
+                Found::Nothing => "a thing",
+            };
+            let message = format!("the name `{}` is given twice", name.value);
+            let diagnostic =
+                Diagnostic::error(Code::DuplicateName, name.span, message, "given again here")
+                    .with_label(first, format!("it is {kind} already, named here"));
+            self.reports.add(diagnostic);
+            self.names.mark_used(name.value);
+        }
+    }
+
+    /// What a name means where `wanted` is needed; a mistake is reported. The name is then used.
+    fn resolve(
+        &mut self,
+        name: Name<'s>,
+        needed: &str,
+        wanted: fn(Meaning) -> bool,
+    ) -> Option<Meaning> {
+        match self.names.find(name.value) {
+            Found::Here(symbol) => {
+                self.names.mark_used(name.value);
+                if wanted(symbol.meaning) {
+                    return Some(symbol.meaning);
+                }
+                let (kind, place) = (symbol.meaning.kind(), symbol.name.span);
+                self.report_wrong_kind(name, kind, place, needed, symbol.meaning);
+            }
+            Found::Outside(symbol) => {
+                self.names.mark_used(name.value);
+                self.report_outer(name, symbol.name.span);
+            }
+            Found::Nothing => self.report_unknown(name, needed, wanted),
+        }
+        None
+    }
+
+    fn report_wrong_kind(
+        &mut self,
+        name: Name<'s>,
+        kind: &str,
+        declared: Span,
+        needed: &str,
+        meaning: Meaning,
+    ) {
+        let message = format!("`{}` is {kind}, and {needed} is needed here", name.value);
+        let mut diagnostic =
+            Diagnostic::error(Code::WrongKind, name.span, message, format!("not {needed}"))
+                .with_label(declared, format!("{kind}, declared here"));
+        if let Some(usual) = meaning.use_of(name.value) {
+            diagnostic = diagnostic.with_help(format!("{kind} is used by {usual}"));
+        }
+        self.reports.add(diagnostic);
+    }
+
+    fn report_outer(&mut self, name: Name<'s>, declared: Span) {
+        let message = format!(
+            "`{}` is of the sequence, and the block after `in reverse` does not see it",
+            name.value
+        );
+        let diagnostic = Diagnostic::error(
+            Code::OuterVariableInReverse,
+            name.span,
+            message,
+            "not seen from here",
+        )
+        .with_label(declared, "declared in the sequence")
+        .with_help("declare it at the top of the file, or within the block");
+        self.reports.add(diagnostic);
+    }
+
+    fn report_unknown(&mut self, name: Name<'s>, needed: &str, wanted: fn(Meaning) -> bool) {
+        let message = format!("there is no `{}`; {needed} is needed here", name.value);
+        let mut diagnostic =
+            Diagnostic::error(Code::UnknownName, name.span, message, "declared nowhere");
+        let meant = self.reports.meant(name.value, self.names.candidates(wanted));
+        if let Some(meant) = meant {
+            diagnostic = diagnostic.with_help(format!("did you mean `{meant}`?"));
+            self.names.mark_used(meant);
+        }
+        self.reports.add(diagnostic);
+    }
+
+    /// A local that there may be no room for.
+    fn room_for(&mut self, local: Option<LocalId>, span: Span) -> LocalId {
+        local.unwrap_or_else(|| {
+            self.report_full(span);
+            LocalId(0)
+        })
+    }
+
+    /// A frame that is too small, once.
+    fn report_full(&mut self, span: Span) {
+        if std::mem::replace(&mut self.frame.is_full, true) {
+            return;
+        }
+        let message = format!(
+            "a sequence has room for {MAX_SLOTS} variables, hidden ones among them; the counter of \
+             a loop counts as three"
+        );
+        let diagnostic = Diagnostic::error(Code::TooMany, span, message, "this needs one too many")
+            .with_help("name a sequence for a part of it and call that");
+        self.reports.add(diagnostic);
+    }
+
+    /// A hidden local for the statement in hand.
+    fn temporary(&mut self, of_type: Type, span: Span) -> LocalId {
+        let local = self.frame.temporary(of_type);
+        self.room_for(local, span)
+    }
+
+    /// A hidden local until it is given back.
+    fn hidden(&mut self, of_type: Type, span: Span) -> LocalId {
+        let local = self.frame.hidden(of_type);
+        self.room_for(local, span)
+    }
+}

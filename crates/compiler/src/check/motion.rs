@@ -1,0 +1,199 @@
+//! Motions: where they go, and what their reverse needs.
+
+use super::Checker;
+use super::expression::Need;
+use super::frame::NamedPosition;
+use super::names::Meaning;
+use crate::tree::{Expression, ExpressionKind, Motion, StatementKind};
+use crate::types::ValueType;
+use obverse_isa::{Axis, Frame, KeyframeId, Path};
+use obverse_syntax::ast::{FrameWord, Heading, Name, Target};
+use obverse_syntax::codes::Code;
+use obverse_syntax::diagnostic::Diagnostic;
+use obverse_syntax::span::{Span, Spanned};
+
+/// What a motion goes to where its target is a name.
+enum Named {
+    Joints(Expression),
+    Position(obverse_isa::SlotId),
+}
+
+impl<'s> Checker<'s> {
+    /// `move …`
+    pub(super) fn motion(
+        &mut self,
+        target: &Target<'s>,
+        is_linear: bool,
+        always: Option<Span>,
+        span: Span,
+    ) -> Option<StatementKind> {
+        let path = if is_linear { Path::Linear } else { Path::Joint };
+        let before = self.frame.named;
+        self.lose_position("this motion goes to no joint configuration by name", span);
+        let motion = match target {
+            Target::Named(name) => match self.named_target(*name)? {
+                Named::Joints(joints) => {
+                    if let ExpressionKind::Joints(to) = joints.kind {
+                        self.frame.named = NamedPosition::Known(to);
+                        if let Some(always) = always {
+                            return self.always(before, to, path, always);
+                        }
+                    }
+                    Motion::Joints(joints, path)
+                }
+                Named::Position(slot) => Motion::Position(slot, path),
+            },
+            Target::Keyframe { item, keyframe } => {
+                let (item, keyframe) = self.keyframe_target(*item, *keyframe)?;
+                Motion::Keyframe(item, keyframe, path)
+            }
+            Target::Relative { distance, heading, frame } => {
+                let need = Need::new(ValueType::LENGTH, "`move`");
+                let distance = self.value(distance, &need);
+                let (axis, frame) = direction(heading.value, *frame);
+                Motion::Relative(distance, axis, frame)
+            }
+        };
+        if let Some(always) = always {
+            let message = "only a move to a joint configuration can be reversible always";
+            let diagnostic =
+                Diagnostic::error(Code::NoNamedPosition, always, message, "asked for here")
+                    .with_label(span, "goes elsewhere")
+                    .with_help("without it, the move goes back to where it was recorded to begin");
+            self.reports.add(diagnostic);
+            return None;
+        }
+        Some(StatementKind::Move(motion))
+    }
+
+    /// A move whose reverse goes to the configuration that the program named last.
+    fn always(
+        &mut self,
+        before: NamedPosition,
+        to: obverse_isa::JointsId,
+        path: Path,
+        always: Span,
+    ) -> Option<StatementKind> {
+        match before {
+            NamedPosition::Known(from) => Some(StatementKind::Move(Motion::Always(from, to, path))),
+            NamedPosition::Lost(why, place) => {
+                let message = "which position the program named last is not known here";
+                let diagnostic =
+                    Diagnostic::error(Code::NoNamedPosition, always, message, "asked for here")
+                        .with_label(place, why)
+                        .with_help("name a joint configuration just before, or leave this out");
+                self.reports.add(diagnostic);
+                None
+            }
+        }
+    }
+
+    fn named_target(&mut self, name: Name<'s>) -> Option<Named> {
+        let is_target = |meaning| match meaning {
+            Meaning::Joints(_) | Meaning::Position(_) => true,
+            Meaning::Global(_, of_type) | Meaning::Local(_, of_type) => {
+                matches!(of_type, ValueType::Joints | ValueType::Unknown)
+            }
+            _ => false,
+        };
+        let meaning = self.resolve(name, "a joint configuration or a position", is_target)?;
+        let kind = match meaning {
+            Meaning::Position(slot) => return Some(Named::Position(slot)),
+            Meaning::Joints(joints) => ExpressionKind::Joints(joints),
+            Meaning::Global(global, ValueType::Joints) => ExpressionKind::Global(global),
+            Meaning::Local(local, ValueType::Joints) => ExpressionKind::Local(local),
+            _ => return None,
+        };
+        let of_type = ValueType::Joints;
+        Some(Named::Joints(Expression { kind, of_type, span: name.span }))
+    }
+
+    fn keyframe_target(
+        &mut self,
+        item: Name<'s>,
+        keyframe: Name<'s>,
+    ) -> Option<(Expression, KeyframeId)> {
+        let is_item = |meaning| {
+            matches!(
+                meaning,
+                Meaning::Item(_) | Meaning::Local(_, ValueType::Item | ValueType::Unknown)
+            )
+        };
+        let meaning = self.resolve(item, "an item", is_item)?;
+        let id = self.keyframe(keyframe);
+        let kind = match meaning {
+            Meaning::Item(declared) => {
+                let has_it = self.module.items.get(declared.index()).is_some_and(|declared| {
+                    declared.keyframes.iter().any(|known| known.name == id.0)
+                });
+                if !has_it {
+                    self.report_no_keyframe(item, keyframe, declared);
+                    return None;
+                }
+                ExpressionKind::Item(declared)
+            }
+            Meaning::Local(local, ValueType::Item) => {
+                self.keyframes.ask(self.parameter(local), id, keyframe.span);
+                ExpressionKind::Local(local)
+            }
+            _ => return None,
+        };
+        Some((Expression { kind, of_type: ValueType::Item, span: item.span }, id))
+    }
+
+    fn report_no_keyframe(
+        &mut self,
+        item: Name<'s>,
+        keyframe: Name<'s>,
+        declared: obverse_isa::ItemId,
+    ) {
+        let message = format!("the item `{}` has no keyframe `{}`", item.value, keyframe.value);
+        let mut diagnostic =
+            Diagnostic::error(Code::UnknownKeyframe, keyframe.span, message, "not one of its own");
+        let keyframes = &self.module.items[declared.index()].keyframes;
+        let known: Vec<String> = keyframes
+            .iter()
+            .filter_map(|known| self.module.keyframes.get(usize::from(known.name)).cloned())
+            .collect();
+        let meant = self.reports.meant(keyframe.value, known.iter().map(String::as_str));
+        diagnostic = match meant {
+            Some(meant) => diagnostic.with_help(format!("did you mean `{meant}`?")),
+            None if known.is_empty() => diagnostic.with_note("it has none"),
+            None => diagnostic.with_note(format!("it has {}", known.join(", "))),
+        };
+        self.reports.add(diagnostic);
+    }
+}
+
+/// What a heading means in a frame, which is the tool centre point's where none is named. The tool
+/// looks along its z axis, with x to the right and y downwards; the base looks along x, with y to
+/// the left and z upwards.
+pub(super) fn direction(heading: Heading, frame: Option<Spanned<FrameWord>>) -> (Axis, Frame) {
+    let frame = match frame.map(|frame| frame.value) {
+        Some(FrameWord::Base) => Frame::Base,
+        Some(FrameWord::ToolMount) => Frame::ToolMount,
+        Some(FrameWord::Tcp) | None => Frame::Tcp,
+    };
+    let is_base = frame == Frame::Base;
+    let axis = match heading {
+        Heading::X => Axis::PlusX,
+        Heading::Y => Axis::PlusY,
+        Heading::Z => Axis::PlusZ,
+        Heading::MinusX => Axis::MinusX,
+        Heading::MinusY => Axis::MinusY,
+        Heading::MinusZ => Axis::MinusZ,
+        Heading::Forward if is_base => Axis::PlusX,
+        Heading::Backward if is_base => Axis::MinusX,
+        Heading::Left if is_base => Axis::PlusY,
+        Heading::Right if is_base => Axis::MinusY,
+        Heading::Up if is_base => Axis::PlusZ,
+        Heading::Down if is_base => Axis::MinusZ,
+        Heading::Forward => Axis::PlusZ,
+        Heading::Backward => Axis::MinusZ,
+        Heading::Left => Axis::MinusX,
+        Heading::Right => Axis::PlusX,
+        Heading::Up => Axis::MinusY,
+        Heading::Down => Axis::PlusY,
+    };
+    (axis, frame)
+}

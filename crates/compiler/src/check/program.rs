@@ -1,0 +1,301 @@
+//! The program as a whole: in which order its parts are checked, and what can be said of it only
+//! when all of them have been.
+
+use super::frame::FrameScope;
+use super::names::{Found, Meaning, Names};
+use super::{Checker, Interned, Signature};
+use crate::keyframes::KeyframeFlow;
+use crate::report::{Reports, warning};
+use crate::tree;
+use crate::types::{TYPE_NAMES, ValueType};
+use obverse_bytecode::{Module, SourceFile};
+use obverse_isa::{ErrorId, FunctionId, GlobalId, ItemId, JointsId};
+use obverse_syntax::ast::{Item, Name, Program, Sequence};
+use obverse_syntax::codes::Code;
+use obverse_syntax::diagnostic::Diagnostic;
+use obverse_syntax::span::Span;
+use std::collections::BTreeSet;
+
+/// Check a program; without mistakes there is a checked tree.
+pub(crate) fn check<'s>(
+    source_name: &str,
+    source: &'s str,
+    program: &Program<'s>,
+    reports: Reports,
+) -> (Option<tree::Program>, Reports) {
+    let mut checker = Checker::new(source_name, source, reports);
+    checker.declare_items(program);
+    checker.check_declarations(program);
+    checker.check_bodies(program);
+    let main = checker.main(program);
+    checker.check_checkpoints();
+    checker.warn_of_unused(main);
+    let flow = std::mem::take(&mut checker.keyframes);
+    flow.check(&checker.module, &mut checker.reports);
+    let Checker { reports, functions, module, first_values, .. } = checker;
+    let functions: Option<Vec<tree::Function>> = functions.into_iter().collect();
+    let checked = match (main, functions) {
+        (Some(main), Some(functions)) if !reports.has_errors() => {
+            Some(tree::Program { module, first_values, functions, main })
+        }
+        _ => None,
+    };
+    (checked, reports)
+}
+
+/// How many functions a module has at the most; replacements and the start are among them.
+const MAX_FUNCTIONS: usize = 65_535;
+
+impl<'s> Checker<'s> {
+    fn new(source_name: &str, source: &'s str, reports: Reports) -> Self {
+        let file = SourceFile { name: source_name.to_owned(), text: source.to_owned() };
+        Self {
+            source,
+            reports,
+            names: Names::default(),
+            module: Module { sources: vec![file], ..Module::default() },
+            interned: Interned::default(),
+            signatures: vec![Signature::default()],
+            functions: Vec::new(),
+            first_values: Vec::new(),
+            wanted_checkpoints: Vec::new(),
+            set_checkpoints: BTreeSet::new(),
+            keyframes: KeyframeFlow::default(),
+            frame: FrameScope::new(FunctionId(0), "", Span::default()),
+            full: Vec::new(),
+        }
+    }
+
+    /// Give every declaration its index and its meaning, so that they can name one another.
+    fn declare_items(&mut self, program: &Program<'s>) {
+        let mut cell: Option<Span> = None;
+        for item in &program.items {
+            match item {
+                Item::Cell(file) => {
+                    if let Some(first) = cell {
+                        self.report_twice("cell", file.span, first);
+                    }
+                    cell = Some(file.span);
+                    self.module.cell = Some(file.value.to_owned());
+                }
+                Item::Io(io) => self.declare_function(io.name, Meaning::Io),
+                Item::AdvancedMove(guarded) => {
+                    self.declare_function(guarded.name, Meaning::Guarded);
+                }
+                Item::Sequence(sequence) => self.declare_sequence(sequence),
+                Item::Joints(joints) => {
+                    let entries = self.module.joints.len();
+                    let id = self.index(entries, "joint configurations", joints.name.span);
+                    self.module.joints.push((joints.name.value.to_owned(), [0.0; 6]));
+                    self.declare(joints.name, Meaning::Joints(JointsId(id)));
+                }
+                Item::ItemDeclaration(item) => self.declare_item(item.name),
+                Item::Error(error) => self.declare_error(error.name),
+                Item::Variable(variable) => {
+                    let id = self.index(self.module.globals.len(), "variables", variable.span);
+                    self.module.globals.push(obverse_bytecode::Variable {
+                        name: variable.name.value.to_owned(),
+                        of_type: obverse_isa::Type::Int,
+                    });
+                    self.declare(variable.name, Meaning::Global(GlobalId(id), ValueType::Unknown));
+                }
+            }
+        }
+    }
+
+    fn declare_item(&mut self, name: Name<'s>) {
+        let id = self.index(self.module.items.len(), "items", name.span);
+        let item = obverse_bytecode::Item { name: name.value.to_owned(), keyframes: Vec::new() };
+        self.module.items.push(item);
+        self.declare(name, Meaning::Item(ItemId(id)));
+    }
+
+    fn declare_error(&mut self, name: Name<'s>) {
+        let id = self.index(self.module.errors.len(), "errors", name.span);
+        self.module.errors.push(super::errors::undefined(name.value));
+        self.declare(name, Meaning::Error(ErrorId(id)));
+    }
+
+    fn declare_sequence(&mut self, sequence: &Sequence<'s>) {
+        let kind = if sequence.is_action { Meaning::Action } else { Meaning::Sequence };
+        self.declare_function(sequence.name, kind);
+        let parameters = sequence.parameters.iter().map(|parameter| {
+            let of_type = self.type_named(parameter.type_name);
+            (parameter.name.value.to_owned(), of_type, parameter.name.span)
+        });
+        let parameters: Vec<_> = parameters.collect();
+        if let Some(signature) = self.signatures.last_mut() {
+            signature.parameters = parameters;
+        }
+    }
+
+    fn declare_function(&mut self, name: Name<'s>, meaning: fn(FunctionId) -> Meaning) {
+        let id = self.new_function(name.span);
+        self.declare(name, meaning(id));
+    }
+
+    /// A further function, named here.
+    pub(super) fn new_function(&mut self, named: Span) -> FunctionId {
+        let entries = self.signatures.len();
+        let id = self.index(entries, "sequences, moves and blocks in reverse", named);
+        if entries < MAX_FUNCTIONS {
+            self.signatures.push(Signature { named, ..Signature::default() });
+            self.functions.push(None);
+        }
+        FunctionId(id)
+    }
+
+    /// The type of this name; a mistake is reported.
+    pub(super) fn type_named(&mut self, name: Name<'s>) -> ValueType {
+        ValueType::of_name(name.value).unwrap_or_else(|| {
+            let names = TYPE_NAMES.map(|(name, _)| name);
+            let message = format!("there is no type `{}`", name.value);
+            let mut diagnostic =
+                Diagnostic::error(Code::UnknownType, name.span, message, "not a type")
+                    .with_note(format!("the types are {}", names.join(", ")));
+            if let Some(meant) = self.reports.meant(name.value, names.into_iter()) {
+                diagnostic = diagnostic.with_help(format!("did you mean `{meant}`?"));
+            }
+            self.reports.add(diagnostic);
+            ValueType::Unknown
+        })
+    }
+
+    /// A clause that is there already.
+    pub(super) fn report_twice(&mut self, clause: &str, again: Span, first: Span) {
+        let message = format!("`{clause}` is written twice");
+        let diagnostic =
+            Diagnostic::error(Code::DuplicateClause, again, message, "written again here")
+                .with_label(first, "the first is here")
+                .with_help("leave one of them out");
+        self.reports.add(diagnostic);
+    }
+
+    fn check_declarations(&mut self, program: &Program<'s>) {
+        for item in &program.items {
+            match item {
+                Item::Joints(joints) => self.check_joints(joints),
+                Item::ItemDeclaration(item) => self.check_item(item),
+                Item::Variable(variable) => self.check_global(variable),
+                Item::Io(io) => self.check_counterpart(io),
+                Item::Error(error) => self.check_error(error),
+                Item::Cell(_) | Item::AdvancedMove(_) | Item::Sequence(_) => {}
+            }
+        }
+    }
+
+    fn check_bodies(&mut self, program: &Program<'s>) {
+        let mut ids = (1..=u16::MAX).map(FunctionId);
+        for item in &program.items {
+            let is_function =
+                matches!(item, Item::Io(_) | Item::AdvancedMove(_) | Item::Sequence(_));
+            let Some(id) = is_function.then(|| ids.next()).flatten() else { continue };
+            let function = match item {
+                Item::Io(io) => self.check_io(id, io),
+                Item::AdvancedMove(guarded) => self.check_guarded(id, guarded),
+                Item::Sequence(sequence) => self.check_sequence(id, sequence),
+                _ => None,
+            };
+            if let Some(slot) = self.functions.get_mut(id.index() - 1) {
+                *slot = function;
+            }
+        }
+    }
+
+    /// The sequence that the program begins with.
+    fn main(&mut self, program: &Program<'s>) -> Option<FunctionId> {
+        if let Found::Here(symbol) = self.names.find("main") {
+            match symbol.meaning {
+                Meaning::Sequence(id) if self.signatures[id.index()].parameters.is_empty() => {
+                    return Some(id);
+                }
+                Meaning::Sequence(_) | Meaning::Action(_) => {
+                    let message = "`main` is where the program begins: a sequence without \
+                                   parameters"
+                        .to_owned();
+                    let at = match symbol.meaning {
+                        Meaning::Action(_) => "an action",
+                        _ => "it has parameters",
+                    };
+                    self.reports.error(Code::MainParameters, symbol.name.span, message, at);
+                    return None;
+                }
+                _ => {}
+            }
+        }
+        let sequences = program.items.iter().rev().filter_map(|item| match item {
+            Item::Sequence(sequence) => Some(sequence),
+            _ => None,
+        });
+        let mut candidates =
+            sequences.filter(|sequence| !sequence.is_action && sequence.parameters.is_empty());
+        if let Some(last) = candidates.next()
+            && let Found::Here(symbol) = self.names.find(last.name.value)
+            && let Meaning::Sequence(id) = symbol.meaning
+        {
+            return Some(id);
+        }
+        self.report_no_main();
+        None
+    }
+
+    fn report_no_main(&mut self) {
+        let end = u32::try_from(self.source.trim_end().len()).unwrap_or(u32::MAX);
+        let message = "there is no sequence that the program could begin with".to_owned();
+        let diagnostic = Diagnostic::error(
+            Code::NoMain,
+            Span::new(end, end),
+            message,
+            "the file ends without one",
+        )
+        .with_help("write `sequence main { .. }`");
+        self.reports.add(diagnostic);
+    }
+
+    /// A recovery can only go back to a checkpoint that is set somewhere.
+    fn check_checkpoints(&mut self) {
+        for wanted in std::mem::take(&mut self.wanted_checkpoints) {
+            if self.set_checkpoints.contains(wanted.value) {
+                continue;
+            }
+            let message = format!("the program sets no checkpoint `{}`", wanted.value);
+            let mut diagnostic =
+                Diagnostic::error(Code::UnknownCheckpoint, wanted.span, message, "set nowhere");
+            let known = self.set_checkpoints.iter().copied();
+            diagnostic = match self.reports.meant(wanted.value, known) {
+                Some(meant) => diagnostic.with_help(format!("did you mean `{meant}`?")),
+                None => {
+                    diagnostic.with_help(format!("write `checkpoint {}` where it is", wanted.value))
+                }
+            };
+            self.reports.add(diagnostic);
+        }
+    }
+
+    fn warn_of_unused(&mut self, main: Option<FunctionId>) {
+        if main.is_none() {
+            // Then nothing is used.
+            return;
+        }
+        for symbol in self.names.all() {
+            let name = symbol.name.value;
+            let is_main = matches!(symbol.meaning, Meaning::Sequence(id) if Some(id) == main);
+            if symbol.is_used || is_main || name.starts_with('_') {
+                continue;
+            }
+            let (kind, use_) = match symbol.meaning {
+                Meaning::Sequence(_) | Meaning::Action(_) => (symbol.meaning.kind(), "called"),
+                Meaning::Error(_) => ("an error", "thrown"),
+                Meaning::Global(..) | Meaning::Local(..) => ("a variable", "read"),
+                Meaning::Item(_) | Meaning::Counter(_) => continue,
+                _ => (symbol.meaning.kind(), "used"),
+            };
+            let message = format!("`{name}` is {kind} that is never {use_}");
+            let at = format!("never {use_}");
+            self.reports.add(
+                warning(Code::Unused, symbol.name.span, message, at)
+                    .with_help(format!("leave it out, or call it `_{name}`")),
+            );
+        }
+    }
+}

@@ -1,0 +1,207 @@
+//! What functions do to those who call them: which errors they leave to be responded to, whether
+//! they make their callers leave, whether they pass a barrier.
+//!
+//! Linear in the program: an error that is for the caller goes up one call, and that the program
+//! is being left goes up as one truth.
+
+use crate::response::{Response, is_for_caller, response};
+use crate::tree::{Block, Body, Program, StatementKind};
+use obverse_isa::{ErrorId, FunctionId};
+use obverse_syntax::span::Span;
+
+/// What is known of all functions. The start, function 0, has no effects.
+#[derive(Debug)]
+pub(crate) struct Effects {
+    /// By error: what is done about it.
+    responses: Vec<Response>,
+    /// By function.
+    functions: Vec<Effect>,
+    /// By function: whether it may be run while an error is being recovered from.
+    in_recovery: Vec<bool>,
+}
+
+/// What is known of a function.
+#[derive(Clone, Debug, Default)]
+struct Effect {
+    /// The errors that its caller responds to.
+    for_caller: Vec<ErrorId>,
+    /// The errors that it responds to itself.
+    own: Vec<ErrorId>,
+    /// What it calls, and where.
+    calls: Vec<(FunctionId, Span)>,
+    /// Whether it may make its caller leave.
+    leaves: bool,
+    /// Where it passes a barrier, itself or by a call.
+    barrier: Option<Span>,
+}
+
+impl Effects {
+    /// Those of a program.
+    pub(crate) fn of(program: &Program) -> Self {
+        let errors = &program.module.errors;
+        let mut effects = Self {
+            responses: errors.iter().map(response).collect(),
+            functions: vec![Effect::default(); program.functions.len() + 1],
+            in_recovery: Vec::new(),
+        };
+        let for_caller: Vec<bool> = errors.iter().map(is_for_caller).collect();
+        for (id, function) in program.numbered() {
+            if let Body::Guarded(guarded) = &function.body {
+                let thrown = [guarded.on_success.throws, guarded.on_failure.throws];
+                let thrown = thrown.into_iter().flatten().map(|(error, _)| error);
+                effects.functions[id.index()].for_caller = distinct(thrown.collect());
+            }
+        }
+        for (id, function) in program.numbered() {
+            if let Body::Block(block) = &function.body {
+                effects.functions[id.index()] = effects.of_block(block, &for_caller);
+            }
+        }
+        effects.spread();
+        effects.in_recovery = effects.reached_from_recoveries();
+        effects
+    }
+
+    /// What a block does that its own calls do not: those are followed later.
+    fn of_block(&self, block: &Block, for_caller: &[bool]) -> Effect {
+        let mut effect = Effect::default();
+        block.each_statement(&mut |statement| match &statement.kind {
+            StatementKind::Throw(error) => effect.raise(*error, for_caller),
+            StatementKind::Advance(guarded) => {
+                for error in &self.functions[guarded.index()].for_caller {
+                    effect.raise(*error, for_caller);
+                }
+            }
+            StatementKind::Call(callee, _) => effect.calls.push((*callee, statement.span)),
+            StatementKind::Barrier(_) | StatementKind::Irreversible(..) => {
+                effect.barrier = effect.barrier.or(Some(statement.span));
+            }
+            _ => {}
+        });
+        effect.own = distinct(std::mem::take(&mut effect.own));
+        effect.for_caller = distinct(std::mem::take(&mut effect.for_caller));
+        effect
+    }
+
+    /// Carry what goes up from callees to their callers.
+    fn spread(&mut self) {
+        let mut callers = vec![Vec::new(); self.functions.len()];
+        for (index, effect) in self.functions.iter().enumerate() {
+            for (callee, _) in &effect.calls {
+                callers[callee.index()].push(index);
+            }
+        }
+        let mut changed = Vec::new();
+        for index in 0..self.functions.len() {
+            let effect = &self.functions[index];
+            let callees = effect.calls.iter().map(|(callee, _)| &self.functions[callee.index()]);
+            let from_callees = callees.flat_map(|callee| &callee.for_caller);
+            let may_leave =
+                effect.own.iter().chain(from_callees).any(|error| self.may_leave(*error));
+            self.functions[index].leaves = may_leave;
+            if may_leave || self.functions[index].barrier.is_some() {
+                changed.push(index);
+            }
+        }
+        while let Some(callee) = changed.pop() {
+            let (leaves, barrier) = (self.functions[callee].leaves, self.functions[callee].barrier);
+            for &caller in &callers[callee] {
+                let effect = &mut self.functions[caller];
+                let before = (effect.leaves, effect.barrier.is_some());
+                effect.leaves |= leaves;
+                effect.barrier = effect.barrier.or(barrier);
+                if before != (effect.leaves, effect.barrier.is_some()) {
+                    changed.push(caller);
+                }
+            }
+        }
+    }
+
+    fn reached_from_recoveries(&self) -> Vec<bool> {
+        let mut reached = vec![false; self.functions.len()];
+        let mut to_visit: Vec<FunctionId> = self.responses.iter().filter_map(using).collect();
+        while let Some(function) = to_visit.pop() {
+            if !std::mem::replace(&mut reached[function.index()], true) {
+                let calls = &self.functions[function.index()].calls;
+                to_visit.extend(calls.iter().map(|(callee, _)| *callee));
+            }
+        }
+        reached
+    }
+
+    fn may_leave(&self, error: ErrorId) -> bool {
+        self.responses[error.index()] != Response::Ignore
+    }
+
+    /// What is done about an error.
+    pub(crate) fn response(&self, error: ErrorId) -> Response {
+        self.responses[error.index()]
+    }
+
+    /// The errors that a call of a function leaves to be responded to.
+    pub(crate) fn left_by(&self, function: FunctionId) -> &[ErrorId] {
+        &self.functions[function.index()].for_caller
+    }
+
+    /// Whether a function may make its caller leave.
+    pub(crate) fn leaves(&self, function: FunctionId) -> bool {
+        self.functions[function.index()].leaves
+    }
+
+    /// Where a function passes a barrier.
+    pub(crate) fn barrier(&self, function: FunctionId) -> Option<Span> {
+        self.functions[function.index()].barrier
+    }
+
+    /// What a function calls, and where.
+    pub(crate) fn calls(&self, function: FunctionId) -> &[(FunctionId, Span)] {
+        &self.functions[function.index()].calls
+    }
+
+    /// Whether a function, or what it calls, may raise an error that is not just noted there.
+    pub(crate) fn may_fail(&self, function: FunctionId) -> bool {
+        let effect = &self.functions[function.index()];
+        effect.leaves || !effect.own.is_empty() || !effect.for_caller.is_empty()
+    }
+
+    /// Whether any function may make its caller leave.
+    pub(crate) fn any_leaves(&self) -> bool {
+        self.functions.iter().any(|effect| effect.leaves)
+            || self.functions.iter().any(|effect| !effect.for_caller.is_empty())
+    }
+
+    /// Whether a function may be run during a recovery and would begin another one.
+    pub(crate) fn recovers_in_recovery(&self, function: FunctionId) -> bool {
+        let effect = &self.functions[function.index()];
+        let callees = effect.calls.iter().flat_map(|(callee, _)| self.left_by(*callee));
+        self.in_recovery[function.index()]
+            && effect
+                .own
+                .iter()
+                .chain(callees)
+                .any(|error| matches!(self.responses[error.index()], Response::Recover { .. }))
+    }
+}
+
+impl Effect {
+    fn raise(&mut self, error: ErrorId, for_caller: &[bool]) {
+        match for_caller[error.index()] {
+            true => self.for_caller.push(error),
+            false => self.own.push(error),
+        }
+    }
+}
+
+fn using(response: &Response) -> Option<FunctionId> {
+    match response {
+        Response::Recover { using, .. } => *using,
+        Response::Ignore | Response::Stop => None,
+    }
+}
+
+/// Each once, in the order of their declaration.
+fn distinct(mut errors: Vec<ErrorId>) -> Vec<ErrorId> {
+    errors.sort_unstable();
+    errors.dedup();
+    errors
+}

@@ -1,0 +1,86 @@
+//! Which items reach which parameters, and whether they have the keyframes that are asked of them.
+//!
+//! A parameter that is an item may be passed on, so that what is asked of it is known only when
+//! all sequences are. Knows nothing of motions.
+
+use crate::report::Reports;
+use obverse_bytecode::Module;
+use obverse_isa::{FunctionId, ItemId, KeyframeId, LocalId};
+use obverse_syntax::codes::Code;
+use obverse_syntax::diagnostic::Diagnostic;
+use obverse_syntax::span::Span;
+use std::collections::{HashMap, HashSet};
+
+/// A parameter of a function.
+pub(crate) type Parameter = (FunctionId, LocalId);
+
+/// What is done with the parameters that are items.
+#[derive(Debug, Default)]
+pub(crate) struct KeyframeFlow {
+    asked: HashMap<Parameter, Vec<(KeyframeId, Span)>>,
+    passed: HashMap<Parameter, Vec<Parameter>>,
+    given: Vec<(ItemId, Parameter, Span)>,
+}
+
+impl KeyframeFlow {
+    /// A keyframe of a parameter is moved to.
+    pub(crate) fn ask(&mut self, parameter: Parameter, keyframe: KeyframeId, at: Span) {
+        self.asked.entry(parameter).or_default().push((keyframe, at));
+    }
+
+    /// A parameter is passed on as another.
+    pub(crate) fn pass(&mut self, from: Parameter, to: Parameter) {
+        self.passed.entry(from).or_default().push(to);
+    }
+
+    /// An item is passed as a parameter.
+    pub(crate) fn give(&mut self, item: ItemId, to: Parameter, at: Span) {
+        self.given.push((item, to, at));
+    }
+
+    /// Report the items that lack a keyframe they are asked for.
+    pub(crate) fn check(&self, module: &Module, reports: &mut Reports) {
+        let mut settled = HashSet::new();
+        for &(item, parameter, at) in &self.given {
+            if settled.insert((item, parameter)) {
+                self.check_item(item, parameter, at, module, reports);
+            }
+        }
+    }
+
+    fn check_item(
+        &self,
+        item: ItemId,
+        parameter: Parameter,
+        at: Span,
+        module: &Module,
+        reports: &mut Reports,
+    ) {
+        let Some(declared) = module.items.get(item.index()) else { return };
+        let mut seen = HashSet::from([parameter]);
+        let mut reported = HashSet::new();
+        let mut to_visit = vec![parameter];
+        while let Some(parameter) = to_visit.pop() {
+            for &(keyframe, asked_at) in self.asked.get(&parameter).into_iter().flatten() {
+                let has = declared.keyframes.iter().any(|known| known.name == keyframe.0);
+                if has || !reported.insert(keyframe) {
+                    continue;
+                }
+                let name = &module.keyframes[keyframe.index()];
+                let message = format!(
+                    "the item `{}` has no keyframe `{name}`, and what it is passed to needs one",
+                    declared.name
+                );
+                reports.add(
+                    Diagnostic::error(Code::UnknownKeyframe, at, message, "passed here")
+                        .with_label(asked_at, "the keyframe is moved to here"),
+                );
+            }
+            for &next in self.passed.get(&parameter).into_iter().flatten() {
+                if seen.insert(next) {
+                    to_visit.push(next);
+                }
+            }
+        }
+    }
+}

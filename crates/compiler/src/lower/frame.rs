@@ -1,0 +1,115 @@
+//! The function that is being lowered: its frame, and the ways that wait for their join.
+
+use super::Lower;
+use super::leave::Way;
+use crate::check::MAX_SLOTS;
+use crate::tree::Layout;
+use obverse_bytecode::{Mark, Variable};
+use obverse_isa::{Instr, Label, LocalId, ReasonId, Setting, Type};
+use obverse_syntax::span::Span;
+
+/// What is known of the function in hand.
+#[derive(Default)]
+pub(super) struct Frame<'p> {
+    /// Where it is named.
+    pub(super) named: Span,
+    /// What its frame holds.
+    pub(super) layout: Layout,
+    /// The settings that hold to its end.
+    pub(super) modal: &'p [(Setting, LocalId)],
+    /// Whether its statements are actions of the robot that a story tells.
+    pub(super) has_actions: bool,
+    /// Whether it is the start, which leaves nothing and restarts by itself.
+    pub(super) is_start: bool,
+    /// Whether the next instruction is reached from the one before it.
+    pub(super) is_reached: bool,
+    /// Whether a recovery may begin while another one is under way.
+    pub(super) may_nest_recovery: bool,
+    /// The loops around, innermost last: the jumps out of each.
+    pub(super) loops: Vec<Loop>,
+    /// The scopes around, innermost last.
+    pub(super) scopes: Vec<Scope>,
+    /// The jumps to its end.
+    pub(super) exits: Vec<Mark>,
+    /// The jumps to its beginning.
+    pub(super) restarts: Vec<Mark>,
+    /// How often it has begun again, if it can.
+    pub(super) rounds: Option<LocalId>,
+    /// Which way leads out of a block with a reverse of its own, if any does.
+    pub(super) way: Option<LocalId>,
+    /// How many hidden locals lowering has added.
+    pub(super) hidden: usize,
+}
+
+/// A loop.
+pub(super) struct Loop {
+    /// The jumps out of it.
+    pub(super) breaks: Vec<Mark>,
+    /// How many scopes are around it.
+    pub(super) depth: usize,
+}
+
+/// Something that is put right when it is left.
+pub(super) enum Scope {
+    /// A setting gets its former value.
+    Setting(Setting, LocalId),
+    /// The end of what cannot be taken back.
+    Irreversible(ReasonId),
+    /// A block with a reverse of its own is left by its end alone.
+    Reversed(Vec<(Mark, Way)>),
+}
+
+impl Lower<'_> {
+    /// A hidden local more.
+    pub(super) fn hidden(&mut self, name: &str, of_type: Type) -> LocalId {
+        let frame = &mut self.frame;
+        let slots = frame.layout.locals.len() + 3 * usize::from(frame.layout.counters);
+        if slots >= MAX_SLOTS {
+            self.too_many("a sequence has no room for the variables that its errors need");
+            return LocalId(0);
+        }
+        let local = LocalId(frame.layout.locals.len() as u8);
+        // A name that a hidden local of the tree does not have.
+        let name = match frame.hidden {
+            0 => format!("${name}"),
+            number => format!("${name}{number}"),
+        };
+        frame.hidden += 1;
+        frame.layout.locals.push(Variable { name, of_type });
+        local
+    }
+
+    /// Jumps come together here: the first is landed on if nothing comes from above, all others
+    /// are told apart by a record.
+    pub(super) fn join_all(&mut self, marks: Vec<Mark>) {
+        for mark in marks {
+            self.join_one(mark);
+        }
+    }
+
+    /// A jump comes to here.
+    pub(super) fn join_one(&mut self, mark: Mark) {
+        match self.frame.is_reached {
+            true => self.code.join(mark, |from| Instr::Join { from }),
+            false => self.code.join(mark, |from| Instr::Land { from }),
+        };
+        self.frame.is_reached = true;
+    }
+
+    /// A jump that is always taken.
+    pub(super) fn jump(&mut self) -> Mark {
+        self.frame.is_reached = false;
+        self.code.jump(|target| Instr::Jump { target })
+    }
+
+    /// A jump back that is always taken.
+    pub(super) fn jump_back(&mut self, top: Mark) {
+        self.frame.is_reached = false;
+        self.code.jump_back(top, |target| Instr::Jump { target });
+    }
+
+    /// A recorded join of the way from above and of a jump that comes later.
+    pub(super) fn join_ahead(&mut self) -> Mark {
+        self.code.join_ahead(|from: Label| Instr::Join { from })
+    }
+}

@@ -1,0 +1,92 @@
+//! Functions: what surrounds their bodies.
+
+use super::Lower;
+use super::frame::Frame;
+use crate::tree::{Body, Function};
+use obverse_bytecode::{Continuation, FunctionKind};
+use obverse_isa::{FunctionId, Instr, Type};
+use obverse_syntax::span::Span;
+
+impl<'p> Lower<'p> {
+    /// A function other than the start.
+    pub(super) fn function(&mut self, id: FunctionId, function: &'p Function) {
+        use FunctionKind::{Action, Replacement, Sequence};
+        let first = self.code.here();
+        self.frame = Frame {
+            named: function.named,
+            layout: function.layout.clone(),
+            modal: &function.modal,
+            has_actions: matches!(function.kind, Action | Replacement | Sequence),
+            is_reached: true,
+            may_nest_recovery: self.effects.recovers_in_recovery(id),
+            ..Frame::default()
+        };
+        self.at(function.named, None);
+        self.push(Instr::Enter {});
+        match &function.body {
+            Body::Block(block) => self.body(block),
+            Body::Guarded(guarded) => self.guarded(guarded),
+        }
+        self.push(Instr::Return {});
+        self.close_function(&function.name, function.kind, first);
+    }
+
+    /// Keep a function whose code is complete.
+    pub(super) fn close_function(&mut self, name: &str, kind: FunctionKind, first: u32) {
+        let layout = std::mem::take(&mut self.frame.layout);
+        self.functions.push(obverse_bytecode::Function {
+            name: name.to_owned(),
+            kind,
+            parameters: layout.parameters,
+            locals: layout.locals,
+            counters: layout.counters,
+            slots: layout.slots,
+            first,
+            end: self.code.here(),
+        });
+    }
+
+    /// Statements, and around them what begins them again, and what makes settings right.
+    fn body(&mut self, block: &'p crate::tree::Block) {
+        for &(setting, local) in self.frame.modal {
+            self.keep(setting, local);
+        }
+        let mut begins_again = false;
+        block.each_statement(&mut |statement| {
+            let due = self.due(&statement.kind);
+            let mut continuations = due.into_iter().map(|error| self.continuation(error));
+            begins_again |= continuations.any(|then| then == Some(Continuation::Sequence));
+        });
+        let top = begins_again.then(|| {
+            self.frame.rounds = Some(self.hidden("rounds", Type::Int));
+            self.join_ahead()
+        });
+        self.block(block);
+        self.end(block.end);
+        if let Some(top) = top {
+            let over = self.frame.is_reached.then(|| self.jump());
+            let restarts = std::mem::take(&mut self.frame.restarts);
+            self.join_all(restarts);
+            if let Some(local) = self.frame.rounds {
+                self.push(Instr::AddLocalImmediate { local, value: 1 });
+            }
+            self.restore_modal();
+            self.jump_back(top);
+            over.into_iter().for_each(|over| self.join_one(over));
+        }
+        let exits = std::mem::take(&mut self.frame.exits);
+        self.join_all(exits);
+        self.restore_modal();
+    }
+
+    fn restore_modal(&mut self) {
+        for &(setting, local) in self.frame.modal {
+            self.restore(setting, local);
+        }
+    }
+
+    /// The place of a function's name, for what belongs to no statement.
+    pub(super) fn named(&mut self, span: Span) {
+        self.at(span, None);
+    }
+}

@@ -1,0 +1,199 @@
+//! The ways out of what is under way: loops, functions, blocks with a reverse of their own.
+//!
+//! Such a block has one end, and its records are dropped there. What leaves it says so in a local,
+//! goes to that end, and goes on behind it; what the outside is told, it is told there, so that
+//! the block skipped in reverse leaves no trace of it.
+
+use super::Lower;
+use super::frame::Scope;
+use super::statement::PREFIX;
+use crate::response::Response;
+use crate::tree::{Block, StatementKind};
+use obverse_bytecode::Mark;
+use obverse_isa::{Instr, LocalId, ReasonId, Setting, Type};
+
+/// Where a way out leads.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Way {
+    /// To the end of the function.
+    Out = 1,
+    /// To its beginning.
+    Again = 2,
+    /// To the end of the function, so that the program begins again.
+    Restart = 3,
+}
+
+impl Way {
+    const ALL: [Self; 3] = [Self::Out, Self::Again, Self::Restart];
+}
+
+/// What one step out of a scope is.
+enum Step {
+    Restore(Setting, LocalId),
+    Irreversible(ReasonId),
+}
+
+impl Lower<'_> {
+    /// `break`
+    pub(super) fn leave_loop(&mut self) {
+        let Some(depth) = self.frame.loops.last().map(|around| around.depth) else { return };
+        // No block with a reverse of its own is among them: checked.
+        self.step_out(depth);
+        let mark = self.jump();
+        self.add_break(mark);
+    }
+
+    /// A jump out of the innermost loop.
+    pub(super) fn add_break(&mut self, mark: Mark) {
+        if let Some(around) = self.frame.loops.last_mut() {
+            around.breaks.push(mark);
+        }
+    }
+
+    /// Go where a way leads: as far as the innermost block with a reverse of its own, which goes
+    /// on behind its end.
+    pub(super) fn leave(&mut self, way: Way) {
+        let block = self.reversed_around();
+        self.step_out(block.map_or(0, |index| index + 1));
+        if block.is_some() {
+            let local = self.way_local();
+            self.push(Instr::PushInt { value: way as i32 });
+            self.push(Instr::StoreLocal { prefix: PREFIX, local });
+        }
+        let mark = self.jump();
+        match block.and_then(|index| self.frame.scopes.get_mut(index)) {
+            Some(Scope::Reversed(ways)) => ways.push((mark, way)),
+            _ if way == Way::Again => self.frame.restarts.push(mark),
+            _ => self.frame.exits.push(mark),
+        }
+    }
+
+    /// Leave all sequences under way with an error pending, and begin the program again if that is
+    /// the way.
+    pub(super) fn give_up(&mut self, way: Way) {
+        if self.reversed_around().is_some() {
+            // A recovery that has given up may have set it.
+            if let Some(leaving) = self.globals.leaving {
+                self.set_flag(leaving, false);
+            }
+            return self.leave(way);
+        }
+        if let (Way::Restart, Some(restart)) = (way, self.globals.restart) {
+            self.set_flag(restart, true);
+        }
+        if let (false, Some(leaving)) = (self.frame.is_start, self.globals.leaving) {
+            self.set_flag(leaving, true);
+        }
+        self.leave(Way::Out);
+    }
+
+    /// Leave if what was called has said so.
+    pub(super) fn leave_if_leaving(&mut self) {
+        let Some(leaving) = self.globals.leaving else { return };
+        self.push(Instr::PushGlobal { global: leaving });
+        if self.frame.scopes.is_empty() {
+            let mark = self.code.jump(|target| Instr::JumpIf { prefix: PREFIX, target });
+            return self.frame.exits.push(mark);
+        }
+        let stay = self.code.jump(|target| Instr::JumpUnless { prefix: PREFIX, target });
+        if self.reversed_around().is_some() {
+            self.take_back_restart();
+            self.give_up(Way::Out);
+        } else {
+            self.leave(Way::Out);
+        }
+        self.join_one(stay);
+    }
+
+    /// In a block with a reverse of its own: if the program begins again, that is said behind it.
+    fn take_back_restart(&mut self) {
+        let Some(restart) = self.globals.restart else { return };
+        self.push(Instr::PushGlobal { global: restart });
+        let plain = self.code.jump(|target| Instr::JumpUnless { prefix: PREFIX, target });
+        self.set_flag(restart, false);
+        self.give_up(Way::Restart);
+        self.join_one(plain);
+    }
+
+    /// The beginning of a block with a reverse of its own: nothing leads out of it yet.
+    pub(super) fn begin_ways(&mut self, block: &Block) {
+        let mut may_leave = false;
+        block.each_statement(&mut |statement| {
+            let due = self.due(&statement.kind);
+            may_leave |= due.iter().any(|error| self.effects.response(*error) != Response::Ignore);
+            may_leave |= matches!(&statement.kind,
+                StatementKind::Call(callee, _) if self.effects.leaves(*callee));
+        });
+        if may_leave {
+            let local = self.way_local();
+            self.push(Instr::PushInt { value: 0 });
+            self.push(Instr::StoreLocal { prefix: PREFIX, local });
+        }
+    }
+
+    /// Behind the end of such a block: go on with what has led there.
+    pub(super) fn go_on(&mut self, ways: &[Way]) {
+        for way in Way::ALL {
+            if !ways.contains(&way) {
+                continue;
+            }
+            let local = self.way_local();
+            self.push(Instr::PushLocal { local });
+            let value = way as i16;
+            let stay = self.code.jump(|target| Instr::JumpUnlessEqImmediate {
+                prefix: PREFIX,
+                value,
+                target,
+            });
+            match way {
+                Way::Again => self.leave(way),
+                Way::Out | Way::Restart => self.give_up(way),
+            }
+            self.join_one(stay);
+        }
+    }
+
+    /// Whether some jump so far leads to the end of the innermost block with a reverse of its own,
+    /// or of the function.
+    pub(super) fn has_way_out(&self) -> bool {
+        match self.reversed_around().and_then(|index| self.frame.scopes.get(index)) {
+            Some(Scope::Reversed(ways)) => !ways.is_empty(),
+            _ => !self.frame.exits.is_empty(),
+        }
+    }
+
+    /// The innermost block with a reverse of its own.
+    fn reversed_around(&self) -> Option<usize> {
+        self.frame.scopes.iter().rposition(|scope| matches!(scope, Scope::Reversed(_)))
+    }
+
+    /// Put right what the scopes from this one inwards have changed, the innermost first.
+    fn step_out(&mut self, outermost: usize) {
+        let inner = self.frame.scopes.get(outermost..).unwrap_or_default();
+        let steps: Vec<Step> = inner.iter().rev().filter_map(step).collect();
+        for step in steps {
+            match step {
+                Step::Restore(setting, local) => self.restore(setting, local),
+                Step::Irreversible(reason) => self.push(Instr::Irreversible { reason }),
+            }
+        }
+    }
+
+    /// The local that says which way leads out of a block.
+    fn way_local(&mut self) -> LocalId {
+        if let Some(known) = self.frame.way {
+            return known;
+        }
+        let way = self.hidden("way", Type::Int);
+        self.frame.way = Some(way);
+        way
+    }
+}
+
+fn step(scope: &Scope) -> Option<Step> {
+    match scope {
+        Scope::Setting(setting, former) => Some(Step::Restore(*setting, *former)),
+        Scope::Irreversible(reason) => Some(Step::Irreversible(*reason)),
+        Scope::Reversed(_) => None,
+    }
+}

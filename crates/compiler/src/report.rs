@@ -1,0 +1,88 @@
+//! Where what is wrong with a program is gathered. Knows nothing of what can be wrong.
+
+use obverse_syntax::codes::Code;
+use obverse_syntax::diagnostic::{Diagnostic, Severity};
+use obverse_syntax::span::Span;
+
+/// More than these are not kept: a text with so many is not meant as a program.
+const MAX_DIAGNOSTICS: usize = 200;
+
+/// How many words are compared in search of the one that was meant, in all of a program.
+const MAX_COMPARED: usize = 100_000;
+
+/// What has been found so far.
+#[derive(Debug)]
+pub(crate) struct Reports {
+    diagnostics: Vec<Diagnostic>,
+    has_errors: bool,
+    is_whole: bool,
+    compared: usize,
+}
+
+/// What may be a consequence of a part that the parser has left out.
+const OF_ABSENCE: [Code; 9] = [
+    Code::UnknownName,
+    Code::UnknownKeyframe,
+    Code::UnknownCheckpoint,
+    Code::NoMain,
+    Code::MissingClause,
+    Code::BreakOutsideLoop,
+    Code::NoNamedPosition,
+    Code::ArgumentCount,
+    Code::VectorLength,
+];
+
+impl Reports {
+    /// Nothing yet. If the tree is not whole, what its missing parts may have caused is not kept.
+    pub(crate) fn new(is_whole: bool) -> Self {
+        Self { diagnostics: Vec::new(), has_errors: false, is_whole, compared: 0 }
+    }
+
+    /// Keep a diagnostic.
+    pub(crate) fn add(&mut self, diagnostic: Diagnostic) {
+        let is_warning = diagnostic.severity == Severity::Warning;
+        if !self.is_whole && (is_warning || OF_ABSENCE.contains(&diagnostic.code)) {
+            return;
+        }
+        self.has_errors |= diagnostic.severity == Severity::Error;
+        if self.diagnostics.len() < MAX_DIAGNOSTICS {
+            self.diagnostics.push(diagnostic);
+        }
+    }
+
+    /// Keep an error that needs no more than one place and a sentence.
+    pub(crate) fn error(&mut self, code: Code, span: Span, message: String, at: &str) {
+        self.add(Diagnostic::error(code, span, message, at));
+    }
+
+    /// Whether the program cannot be compiled.
+    pub(crate) fn has_errors(&self) -> bool {
+        self.has_errors
+    }
+
+    /// The one of `words` that was probably meant by `word`.
+    pub(crate) fn meant<'w>(
+        &mut self,
+        word: &str,
+        words: impl Iterator<Item = &'w str>,
+    ) -> Option<&'w str> {
+        let budget = MAX_COMPARED.saturating_sub(self.compared);
+        let compared = &mut self.compared;
+        obverse_syntax::nearest(word, words.take(budget).inspect(|_| *compared += 1))
+    }
+
+    /// All of them.
+    pub(crate) fn into_diagnostics(self) -> Vec<Diagnostic> {
+        self.diagnostics
+    }
+}
+
+/// A warning of this kind at a place.
+pub(crate) fn warning(
+    code: Code,
+    span: Span,
+    message: impl Into<String>,
+    at: impl Into<String>,
+) -> Diagnostic {
+    Diagnostic { severity: Severity::Warning, ..Diagnostic::error(code, span, message, at) }
+}

@@ -1,0 +1,26 @@
+//! Every diagnostic of the compiler: its example has it and no other, and the corrected one none.
+
+use crate::common::{findings, module};
+use obverse_syntax::codes::Code;
+
+fn codes_of_the_compiler() -> impl Iterator<Item = Code> {
+    let is_of_compiler = |code: &Code| !code.as_str().starts_with("E00");
+    Code::ALL.iter().copied().filter(is_of_compiler)
+}
+
+#[test]
+fn the_wrong_example_has_its_code_and_no_other() {
+    for code in codes_of_the_compiler().filter(|code| !code.wrong_example().is_empty()) {
+        let found = findings(code.wrong_example());
+        assert_eq!(found.len(), 1, "{code}: {found:#?}");
+        assert!(found[0].starts_with(code.as_str()), "{code}: {found:#?}");
+    }
+}
+
+#[test]
+fn the_right_example_compiles_without_a_word() {
+    for code in codes_of_the_compiler().filter(|code| !code.right_example().is_empty()) {
+        assert_eq!(findings(code.right_example()), Vec::<String>::new(), "{code}");
+        module(code.right_example());
+    }
+}

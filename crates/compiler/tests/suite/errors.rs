@@ -1,0 +1,725 @@
+//! What the code does about errors: where each is due, and how it goes on.
+
+use crate::common::{code, lines, module};
+
+/// That a function of a program becomes this code.
+fn check(source: &str, function: &str, expected: &str) {
+    assert_eq!(code(&module(source), function), lines(expected));
+}
+
+#[test]
+fn a_warning_is_noted() {
+    check(
+        r"
+        error e { severity warning }
+        sequence main {
+        throw e wait 1 s
+        }
+        ",
+        "main",
+        "
+        enter
+        error.raise e
+        error.clear e
+        push.const 1.0
+        wait
+        return
+        ",
+    );
+}
+
+#[test]
+fn an_error_without_recovery_stops_with_the_error_pending() {
+    check(
+        r"
+        error e { }
+        sequence main {
+        if holding { throw e } wait 1 s
+        }
+        ",
+        "main",
+        "
+        enter
+        sense.holding $0
+        push.local $0
+        jump.unless +5
+        error.raise e
+        push.bool high
+        store.global $leaving
+        jump +4
+        land -5
+        push.const 1.0
+        wait
+        join -4
+        return
+        ",
+    );
+}
+
+#[test]
+fn a_fatal_error_stops() {
+    check(
+        r"
+        error e { severity fatal }
+        sequence main {
+        if holding { throw e }
+        }
+        ",
+        "main",
+        "
+        enter
+        sense.holding $0
+        push.local $0
+        jump.unless +5
+        error.raise e
+        push.bool high
+        store.global $leaving
+        jump +2
+        land -5
+        join -2
+        return
+        ",
+    );
+}
+
+#[test]
+fn recover_and_go_on() {
+    check(
+        r"
+        joints a = [0, -90, 90, -90, -90, 0] deg
+        error e { recover using fix then continue }
+        sequence fix { move to a }
+        sequence main {
+        throw e wait 1 s
+        }
+        ",
+        "main",
+        "
+        enter
+        error.raise e
+        call fix
+        error.clear e
+        push.const 1.0
+        wait
+        return
+        ",
+    );
+}
+
+#[test]
+fn recover_and_do_the_action_again() {
+    check(
+        r"
+        joints a = [0, -90, 90, -90, -90, 0] deg
+        error e { recover using fix then return to action }
+        sequence fix { move to a }
+        advanced move go { distance 1 mm x on failure { throw e } }
+        sequence main {
+        advance go wait 1 s
+        }
+        ",
+        "main",
+        "
+        enter
+        push.int 0
+        store.local $rounds
+        join +8
+        call go
+        push.raised e
+        jump.unless +10
+        jump.unless.local.lt.imm $rounds 3 +5
+        call fix
+        error.clear e
+        add.local.imm $rounds 1
+        jump -8
+        land -5
+        push.bool high
+        store.global $leaving
+        jump +4
+        land -10
+        push.const 1.0
+        wait
+        join -4
+        return
+        ",
+    );
+}
+
+#[test]
+fn recover_and_do_the_sequence_again() {
+    check(
+        r"
+        joints a = [0, -90, 90, -90, -90, 0] deg
+        error e { recover using fix then return to sequence }
+        sequence fix { move to a }
+        advanced move go { distance 1 mm x on failure { throw e } }
+        sequence main {
+        speed slow advance go wait 1 s
+        }
+        ",
+        "main",
+        "
+        enter
+        push.setting speed
+        store.local $0
+        join +22
+        push.speed slow
+        setting.set speed
+        call go
+        push.raised e
+        jump.unless +10
+        jump.unless.local.lt.imm $rounds 3 +5
+        call fix
+        error.clear e
+        add.local.imm $rounds 1
+        jump +9
+        land -5
+        push.bool high
+        store.global $leaving
+        jump +10
+        land -10
+        push.const 1.0
+        wait
+        jump +5
+        land -9
+        push.local $0
+        setting.set speed
+        jump -22
+        land -5
+        join -10
+        push.local $0
+        setting.set speed
+        return
+        ",
+    );
+}
+
+#[test]
+fn recover_and_stop() {
+    check(
+        r"
+        joints a = [0, -90, 90, -90, -90, 0] deg
+        error e { recover using fix then stop }
+        sequence fix { move to a }
+        sequence main {
+        if holding { throw e } wait 1 s
+        }
+        ",
+        "main",
+        "
+        enter
+        sense.holding $0
+        push.local $0
+        jump.unless +6
+        error.raise e
+        call fix
+        push.bool high
+        store.global $leaving
+        jump +4
+        land -6
+        push.const 1.0
+        wait
+        join -4
+        return
+        ",
+    );
+}
+
+#[test]
+fn recover_and_restart_the_program() {
+    check(
+        r"
+        joints a = [0, -90, 90, -90, -90, 0] deg
+        error e { recover using fix then restart program }
+        sequence fix { move to a }
+        var n = 1
+        sequence main { if n > 0 { throw e } }
+        ",
+        "$start",
+        "
+        enter
+        join +13
+        push.int 1
+        store.global n
+        call main
+        push.global $restart
+        jump.unless +9
+        jump.unless.local.lt.imm $rounds 3 +9
+        add.local.imm $rounds 1
+        error.clear e
+        push.bool low
+        store.global $restart
+        push.bool low
+        store.global $leaving
+        jump -13
+        land -9
+        join -9
+        halt
+        ",
+    );
+}
+
+#[test]
+fn the_handler_of_a_restart_leaves_the_error_pending() {
+    check(
+        r"
+        joints a = [0, -90, 90, -90, -90, 0] deg
+        error e { recover using fix then restart program }
+        sequence fix { move to a }
+        sequence main {
+        if holding { throw e }
+        }
+        ",
+        "main",
+        "
+        enter
+        sense.holding $0
+        push.local $0
+        jump.unless +8
+        error.raise e
+        call fix
+        push.bool high
+        store.global $restart
+        push.bool high
+        store.global $leaving
+        jump +2
+        land -8
+        join -2
+        return
+        ",
+    );
+}
+
+#[test]
+fn reversal_given_up_calls_otherwise() {
+    check(
+        r"
+        joints a = [0, -90, 90, -90, -90, 0] deg
+        error e { recover by reversing 2 actions otherwise using fix then continue }
+        sequence fix { move to a }
+        sequence main {
+        throw e wait 1 s
+        }
+        ",
+        "main",
+        "
+        enter
+        error.raise e
+        call fix
+        error.clear e
+        push.const 1.0
+        wait
+        return
+        ",
+    );
+}
+
+#[test]
+fn an_error_for_after_the_sequence_is_due_in_its_caller() {
+    check(
+        r"
+        joints a = [0, -90, 90, -90, -90, 0] deg
+        error e { recover using fix respond after current sequence then return to action }
+        sequence fix { move to a }
+        sequence inner { throw e wait 1 s }
+        sequence main {
+        call inner wait 2 s
+        }
+        ",
+        "main",
+        "
+        enter
+        push.int 0
+        store.local $rounds
+        join +8
+        call inner
+        push.raised e
+        jump.unless +10
+        jump.unless.local.lt.imm $rounds 3 +5
+        call fix
+        error.clear e
+        add.local.imm $rounds 1
+        jump -8
+        land -5
+        push.bool high
+        store.global $leaving
+        jump +4
+        land -10
+        push.const 2.0
+        wait
+        join -4
+        return
+        ",
+    );
+}
+
+#[test]
+fn the_sequence_goes_on_meanwhile() {
+    check(
+        r"
+        joints a = [0, -90, 90, -90, -90, 0] deg
+        error e { recover using fix respond after current sequence then return to action }
+        sequence fix { move to a }
+        sequence inner { throw e wait 1 s }
+        sequence main { call inner wait 2 s }
+        ",
+        "inner",
+        "
+        enter
+        error.raise e
+        push.const 1.0
+        wait
+        return
+        ",
+    );
+}
+
+#[test]
+fn what_is_due_after_main_is_due_in_the_start() {
+    check(
+        r"
+        joints a = [0, -90, 90, -90, -90, 0] deg
+        error e { recover using fix respond after current sequence then return to sequence }
+        sequence fix { move to a }
+        sequence main { throw e wait 1 s }
+        ",
+        "$start",
+        "
+        enter
+        push.int 0
+        store.local $rounds
+        join +8
+        call main
+        push.raised e
+        jump.unless +8
+        jump.unless.local.lt.imm $rounds 3 +5
+        call fix
+        error.clear e
+        add.local.imm $rounds 1
+        jump -8
+        land -5
+        jump +2
+        land -8
+        join -2
+        halt
+        ",
+    );
+}
+
+#[test]
+fn a_caller_leaves_with_its_callee() {
+    check(
+        r"
+        error e { }
+        sequence inner { throw e }
+        sequence main {
+        speed slow { call inner } call inner wait 1 s
+        }
+        ",
+        "main",
+        "
+        enter
+        push.setting speed
+        store.local $0
+        push.speed slow
+        setting.set speed
+        call inner
+        push.global $leaving
+        jump.unless +4
+        push.local $0
+        setting.set speed
+        jump +9
+        land -4
+        push.local $0
+        setting.set speed
+        call inner
+        push.global $leaving
+        jump.if +4
+        push.const 1.0
+        wait
+        join -9
+        join -4
+        return
+        ",
+    );
+}
+
+#[test]
+fn a_recovery_does_not_begin_within_another() {
+    check(
+        r"
+        joints a = [0, -90, 90, -90, -90, 0] deg
+        error e { recover using fix }
+        sequence fix { throw e }
+        sequence main {
+        throw e
+        }
+        ",
+        "fix",
+        "
+        enter
+        join +22
+        error.raise e
+        push.global $recovering
+        jump.if +12
+        jump.unless.local.lt.imm $rounds 3 +12
+        push.bool high
+        store.global $recovering
+        call fix
+        push.bool low
+        store.global $recovering
+        push.global $leaving
+        jump.if +6
+        error.clear e
+        add.local.imm $rounds 1
+        jump +7
+        land -12
+        join -12
+        join -6
+        push.bool high
+        store.global $leaving
+        jump +3
+        land -7
+        jump -22
+        land -3
+        return
+        ",
+    );
+}
+
+#[test]
+fn a_block_with_a_reverse_is_left_by_its_end() {
+    check(
+        r"
+        joints a = [0, -90, 90, -90, -90, 0] deg
+        error e { recover using fix }
+        sequence fix { move to a }
+        sequence main {
+        skip in reverse { if holding { throw e } wait 1 s }
+        }
+        ",
+        "main",
+        "
+        enter
+        join +33
+        block.begin
+        sense.holding $0
+        push.local $0
+        jump.unless +13
+        error.raise e
+        jump.unless.local.lt.imm $rounds 3 +7
+        call fix
+        error.clear e
+        add.local.imm $rounds 1
+        push.bool high
+        store.local $again1
+        jump +8
+        land -7
+        push.bool high
+        store.global $leaving
+        jump +5
+        land -13
+        push.const 1.0
+        wait
+        join -8
+        join -5
+        block.skip -21
+        push.local $again1
+        jump.unless +4
+        push.bool low
+        store.local $again1
+        jump +5
+        land -4
+        push.global $leaving
+        jump.if +5
+        jump +3
+        land -5
+        jump -33
+        land -3
+        join -5
+        return
+        ",
+    );
+}
+
+#[test]
+fn an_advanced_move_without_an_aftermath() {
+    check(
+        r"
+        advanced move go { distance 5 mm forward stop if force > 3 N }
+        sequence main { advance go }
+        ",
+        "go",
+        "
+        enter
+        push.const 0.005
+        push.const 3.0
+        move.guarded +z tcp
+        sense.distance $0
+        sense.peak_force $1
+        return
+        ",
+    );
+}
+
+#[test]
+fn an_advanced_move_with_behaviours() {
+    check(
+        r"
+        error e { }
+        advanced move go { distance 5 mm left in base speed slow 
+        succeeds if distance > 3 mm and force < 2 N
+        on success { return to initial position }
+        on failure { throw e } }
+        sequence main { advance go }
+        ",
+        "go",
+        "
+        enter
+        remember $initial
+        push.setting speed
+        store.local $0
+        push.speed slow
+        setting.set speed
+        push.const 0.005
+        push.const 1.7976931348623157e308
+        move.guarded +y base
+        sense.distance $1
+        sense.peak_force $2
+        push.local $0
+        setting.set speed
+        push.const 0.003
+        push.local $1
+        real.lt
+        push.local $2
+        push.const 2.0
+        real.lt
+        bool.and
+        jump.if +3
+        error.raise e
+        jump +3
+        land -3
+        move.slot $initial linear
+        join -3
+        return
+        ",
+    );
+}
+
+#[test]
+fn an_advanced_move_that_is_tried_again() {
+    check(
+        r"
+        error e { }
+        advanced move go { distance 5 mm x
+        on failure { return to initial position repeat with perturbation 2 mm 3 times throw e } }
+        sequence main { advance go }
+        ",
+        "go",
+        "
+        enter
+        remember $initial
+        push.int 0
+        push.int 3
+        for.enter 0 +35
+        for.top 0 +33
+        push.counter 0
+        push.int 0
+        jump.unless.ne +20
+        draw $2
+        draw $3
+        move.slot $initial linear
+        push.const 0.0
+        push.local $2
+        push.const 2.0
+        real.mul
+        push.const 1.0
+        real.sub
+        push.const 0.002
+        real.mul
+        push.local $3
+        push.const 2.0
+        real.mul
+        push.const 1.0
+        real.sub
+        push.const 0.002
+        real.mul
+        move.offset tcp
+        join -20
+        push.const 0.005
+        push.const 1.7976931348623157e308
+        move.guarded +x tcp
+        sense.distance $0
+        sense.peak_force $1
+        push.const 0.004999
+        push.local $0
+        real.le
+        jump.if +5
+        for.next 0 -33
+        for.exit 0 -35
+        move.slot $initial linear
+        error.raise e
+        join -5
+        return
+        ",
+    );
+}
+
+#[test]
+fn a_requirement_traps_or_throws() {
+    check(
+        r"
+        advanced move go { requires holding   and
+         not input 2 distance 1 mm x }
+        sequence main { advance go }
+        ",
+        "go",
+        "
+        enter
+        sense.holding $0
+        sense.input $1 2
+        push.local $0
+        push.local $1
+        bool.not
+        bool.and
+        require go requires holding and not input 2
+        push.const 0.001
+        push.const 1.7976931348623157e308
+        move.guarded +x tcp
+        sense.distance $2
+        sense.peak_force $3
+        return
+        ",
+    );
+}
+
+#[test]
+fn a_requirement_that_fails_throws_what_failure_throws() {
+    check(
+        r"
+        error e { }
+        advanced move go { requires holding distance 1 mm x on failure { throw e } }
+        sequence main { advance go }
+        ",
+        "go",
+        "
+        enter
+        sense.holding $0
+        push.local $0
+        jump.unless +10
+        push.const 0.001
+        push.const 1.7976931348623157e308
+        move.guarded +x tcp
+        sense.distance $1
+        sense.peak_force $2
+        push.const 0.000999
+        push.local $1
+        real.le
+        jump.if +3
+        join -10
+        error.raise e
+        join -3
+        return
+        ",
+    );
+}

@@ -1,0 +1,10 @@
+//! The tests of the compiler, by source text: what each construct becomes, what each mistake is
+//! called and where, and that whatever compiles keeps the rules of the verifier.
+
+mod codes;
+mod common;
+mod diagnostics;
+mod errors;
+mod generated;
+mod lowering;
+mod reversal;

@@ -1,0 +1,1 @@
+//! Errors and how a run goes on after them.

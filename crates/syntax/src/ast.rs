@@ -1,0 +1,683 @@
+//! The syntax tree: what was written, checked for form alone.
+//!
+//! Names are slices of the source; numbers keep the unit they were written with. Nothing here says
+//! whether a name exists or a unit fits: that is the compiler's. Read [`Program`], [`Item`],
+//! [`Statement`], [`Expression`], in this order.
+
+use crate::span::{Span, Spanned};
+
+/// A name as written.
+pub type Name<'s> = Spanned<&'s str>;
+
+/// A source file: declarations in the order written.
+#[derive(Clone, Debug, PartialEq, Default)]
+pub struct Program<'s> {
+    /// The declarations.
+    pub items: Vec<Item<'s>>,
+}
+
+/// A declaration at the top of a file.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Item<'s> {
+    /// `cell "peg_in_hole.toml"`
+    Cell(Spanned<&'s str>),
+    /// `io gripper_open { set 0 low; sleep 0.5 s } reverse gripper_close`
+    Io(IoOperation<'s>),
+    /// `joints start = [3.425, -1.0, 1.2, -1.8, -1.57, 0.3] rad`
+    Joints(JointsDeclaration<'s>),
+    /// `item peg { keyframe grasp = [0, 0, 20] mm [0, 180, 0] deg }`
+    ItemDeclaration(ItemDeclaration<'s>),
+    /// `error peg_not_inserted { … }`
+    Error(ErrorDeclaration<'s>),
+    /// `advanced move insert_peg { … }`
+    AdvancedMove(AdvancedMove<'s>),
+    /// `var count = 0`: a variable of the whole program.
+    Variable(VariableDeclaration<'s>),
+    /// `sequence main { … }`, or `action pick(part: item) { … }`
+    Sequence(Sequence<'s>),
+}
+
+/// An I/O operation (the paper's rule IO).
+#[derive(Clone, Debug, PartialEq)]
+pub struct IoOperation<'s> {
+    /// Its name.
+    pub name: Name<'s>,
+    /// What it does, in order.
+    pub primitives: Vec<Primitive<'s>>,
+    /// The I/O operation that takes its place in reverse.
+    pub counterpart: Option<Name<'s>>,
+    /// The whole declaration.
+    pub span: Span,
+}
+
+/// A primitive (the paper's rule Primitive).
+#[derive(Clone, Debug, PartialEq)]
+pub enum Primitive<'s> {
+    /// `set 0 low`
+    Set {
+        /// Which output.
+        bit: Spanned<u64>,
+        /// High or low.
+        high: bool,
+        /// The primitive.
+        span: Span,
+    },
+    /// `toggle 3`
+    Toggle {
+        /// Which output.
+        bit: Spanned<u64>,
+        /// The primitive.
+        span: Span,
+    },
+    /// `sleep 0.5 s`: the settling time of the outputs before it.
+    Sleep {
+        /// How long.
+        duration: Expression<'s>,
+        /// The primitive.
+        span: Span,
+    },
+}
+
+/// A joint configuration (the paper's rule JointConf).
+#[derive(Clone, Debug, PartialEq)]
+pub struct JointsDeclaration<'s> {
+    /// Its name.
+    pub name: Name<'s>,
+    /// The values as written: any number of them, checked later.
+    pub values: Vector<'s>,
+    /// The whole declaration.
+    pub span: Span,
+}
+
+/// Numbers in brackets with a unit for all, or each with its own: `[1, 2, 3] mm`.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Vector<'s> {
+    /// The elements, constant expressions.
+    pub elements: Vec<Expression<'s>>,
+    /// The unit after the bracket.
+    pub unit: Option<Name<'s>>,
+    /// The vector.
+    pub span: Span,
+}
+
+/// An item with its keyframes (the paper's rule Item).
+#[derive(Clone, Debug, PartialEq)]
+pub struct ItemDeclaration<'s> {
+    /// Its name, also in the workcell.
+    pub name: Name<'s>,
+    /// Its keyframes.
+    pub keyframes: Vec<Keyframe<'s>>,
+    /// The whole declaration.
+    pub span: Span,
+}
+
+/// A named pose of the tool centre point in an item's frame.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Keyframe<'s> {
+    /// Its name.
+    pub name: Name<'s>,
+    /// x, y, z.
+    pub position: Vector<'s>,
+    /// Rotation vector (axis times angle); none means none.
+    pub rotation: Option<Vector<'s>>,
+    /// The keyframe.
+    pub span: Span,
+}
+
+/// An error (the paper's rules Error, Etime, Eoption), with how it is recovered from. Clauses in
+/// any order; each at most once, checked later.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ErrorDeclaration<'s> {
+    /// Its name.
+    pub name: Name<'s>,
+    /// Its clauses in the order written.
+    pub clauses: Vec<Spanned<ErrorClause<'s>>>,
+    /// The whole declaration.
+    pub span: Span,
+}
+
+/// A clause of an error.
+#[derive(Clone, Debug, PartialEq)]
+pub enum ErrorClause<'s> {
+    /// `severity recoverable`
+    Severity(Severity),
+    /// `recover …`
+    Recover(Recovery<'s>),
+    /// `otherwise …`: when recovering has been given up.
+    Otherwise(Otherwise<'s>),
+    /// `respond …`
+    Respond(Respond),
+    /// `then …`: how to go on after recovery.
+    Then(Continuation),
+}
+
+/// How bad an error is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Severity {
+    /// `warning`: noted, the program goes on.
+    Warning,
+    /// `recoverable`: its recovery is tried.
+    Recoverable,
+    /// `fatal`: the program stops.
+    Fatal,
+}
+
+/// How an error is recovered from.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Recovery<'s> {
+    /// `recover using NAME`: the explicit sequence, as in the paper.
+    Using(Name<'s>),
+    /// `recover by reversing …`
+    Reversing {
+        /// How the depth changes from one attempt to the next.
+        depth: Depth,
+        /// How far.
+        extent: Extent<'s>,
+        /// What changes on the way forward again.
+        changes: Vec<Spanned<Change<'s>>>,
+    },
+}
+
+/// How far reversal goes from attempt to attempt.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Depth {
+    /// `by reversing 3 actions`
+    Fixed,
+    /// `by reversing escalating up to 4 actions`
+    Escalating,
+    /// `by reversing learned up to 4 actions`
+    Learned,
+}
+
+/// The bound of a reversal.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Extent<'s> {
+    /// `(up to) 4 actions`
+    Actions(Spanned<u64>),
+    /// `to checkpoint NAME`
+    Checkpoint(Name<'s>),
+    /// `to start of sequence`
+    Sequence,
+}
+
+/// What a recovery changes on the way forward again.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Change<'s> {
+    /// `perturbed 1 mm`
+    Perturbed(Expression<'s>),
+    /// `slower`
+    Slower,
+    /// `lighter`
+    Lighter,
+}
+
+/// What follows when recovering has been given up.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Otherwise<'s> {
+    /// `otherwise using NAME`
+    Using(Name<'s>),
+    /// `otherwise operator`
+    Operator,
+    /// `otherwise stop`
+    Stop,
+}
+
+/// When an error is responded to.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Respond {
+    /// `respond at once`
+    AtOnce,
+    /// `respond after current action`
+    AfterAction,
+    /// `respond after current sequence`
+    AfterSequence,
+}
+
+/// How a program goes on after a recovery.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Continuation {
+    /// `then return to action`: the action again.
+    Action,
+    /// `then continue`: the next action.
+    NextAction,
+    /// `then return to sequence`: the sequence again.
+    Sequence,
+    /// `then restart program`
+    Program,
+    /// `then stop`
+    Stop,
+}
+
+/// An advanced move (the paper's rules Amove and those below it). Clauses in any order; each at
+/// most once, checked later.
+#[derive(Clone, Debug, PartialEq)]
+pub struct AdvancedMove<'s> {
+    /// Its name.
+    pub name: Name<'s>,
+    /// Its clauses in the order written.
+    pub clauses: Vec<Spanned<MoveClause<'s>>>,
+    /// The whole declaration.
+    pub span: Span,
+}
+
+/// A clause of an advanced move.
+#[derive(Clone, Debug, PartialEq)]
+pub enum MoveClause<'s> {
+    /// `requires CONDITION`: must hold before the move (the paper's rule Acondition).
+    Requires(Expression<'s>),
+    /// `distance 300 mm forward in tcp` (rules Aspeci and Amove).
+    Distance {
+        /// How far.
+        distance: Expression<'s>,
+        /// Which way.
+        heading: Spanned<Heading>,
+        /// In which frame; the TCP's where none is named.
+        frame: Option<Spanned<FrameWord>>,
+    },
+    /// `stop if force > 5 N` (rule Aquery).
+    StopIf(Expression<'s>),
+    /// `speed slow` (rule Asetting).
+    Speed(SpeedWord),
+    /// `succeeds if distance > 200 mm` (rule Aeval).
+    SucceedsIf(Expression<'s>),
+    /// `on success { … }` (rule Abehave)
+    OnSuccess(Vec<Spanned<Behaviour<'s>>>),
+    /// `on failure { … }` (rule Abehave)
+    OnFailure(Vec<Spanned<Behaviour<'s>>>),
+}
+
+/// What an advanced move does afterwards (the paper's rule Abehave).
+#[derive(Clone, Debug, PartialEq)]
+pub enum Behaviour<'s> {
+    /// `return to initial position`
+    ReturnToInitialPosition,
+    /// `repeat with perturbation [1 mm] 3 times`
+    RepeatWithPerturbation {
+        /// The largest sideways offset; 1 mm where none is given.
+        within: Option<Expression<'s>>,
+        /// How often.
+        times: Spanned<u64>,
+    },
+    /// `throw NAME`
+    Throw(Name<'s>),
+}
+
+/// A direction in words (the paper's rule direction). What a word means depends on the frame.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Heading {
+    /// `forward`
+    Forward,
+    /// `backward` or `backwards`
+    Backward,
+    /// `left`
+    Left,
+    /// `right`
+    Right,
+    /// `up`
+    Up,
+    /// `down`
+    Down,
+    /// `x`
+    X,
+    /// `y`
+    Y,
+    /// `z`
+    Z,
+    /// `-x`
+    MinusX,
+    /// `-y`
+    MinusY,
+    /// `-z`
+    MinusZ,
+}
+
+/// A frame in words (the paper's rule frame).
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum FrameWord {
+    /// `tcp`
+    Tcp,
+    /// `toolmount`
+    ToolMount,
+    /// `base`
+    Base,
+}
+
+/// A speed in words (the paper's rule speed).
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum SpeedWord {
+    /// `very slow`
+    VerySlow,
+    /// `slow`
+    Slow,
+    /// `normal`
+    Normal,
+    /// `fast`
+    Fast,
+    /// `very fast`
+    VeryFast,
+}
+
+/// A declared variable; its type is that of its value where none is written.
+#[derive(Clone, Debug, PartialEq)]
+pub struct VariableDeclaration<'s> {
+    /// Its name.
+    pub name: Name<'s>,
+    /// Its type as written.
+    pub type_name: Option<Name<'s>>,
+    /// Its first value.
+    pub value: Expression<'s>,
+    /// The whole declaration.
+    pub span: Span,
+}
+
+/// A sequence, or an action with parameters: both are called the same way.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Sequence<'s> {
+    /// Its name.
+    pub name: Name<'s>,
+    /// Whether it was declared with `action`: one step of a story and of a recovery.
+    pub is_action: bool,
+    /// Its parameters.
+    pub parameters: Vec<Parameter<'s>>,
+    /// What it does.
+    pub body: Block<'s>,
+    /// The whole declaration.
+    pub span: Span,
+}
+
+/// A parameter of a sequence.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Parameter<'s> {
+    /// Its name.
+    pub name: Name<'s>,
+    /// Its type: int, number, length, angle, time, force, speed, bool, joints, item.
+    pub type_name: Name<'s>,
+}
+
+/// Statements in braces.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Block<'s> {
+    /// The statements.
+    pub statements: Vec<Statement<'s>>,
+    /// From brace to brace.
+    pub span: Span,
+}
+
+/// A statement and its place.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Statement<'s> {
+    /// What it does.
+    pub kind: StatementKind<'s>,
+    /// The whole statement.
+    pub span: Span,
+}
+
+/// What a statement does. Those up to `Primitive` are actions of the robot.
+#[derive(Clone, Debug, PartialEq)]
+pub enum StatementKind<'s> {
+    /// `move to start linearly reversible always`
+    Move {
+        /// Where to.
+        target: Target<'s>,
+        /// `linearly`: the TCP on a straight line.
+        linear: bool,
+        /// `reversible always`: its reverse goes to the position the program last named.
+        always: Option<Span>,
+    },
+    /// `advance insert_peg`
+    Advance(Name<'s>),
+    /// `call pick(peg)`
+    Call {
+        /// The sequence or action.
+        name: Name<'s>,
+        /// Its arguments.
+        arguments: Vec<Expression<'s>>,
+    },
+    /// `io gripper_open`
+    Io(Name<'s>),
+    /// `wait 0.5 s`
+    Wait(Expression<'s>),
+    /// `wait until input 3 high for up to 2 s else { … }`
+    WaitUntil {
+        /// Which input.
+        input: Spanned<u64>,
+        /// High or low.
+        high: bool,
+        /// The longest time.
+        timeout: Expression<'s>,
+        /// What to do when the time is up; without it, the program goes on.
+        otherwise: Option<Block<'s>>,
+    },
+    /// `set 0 high`, `toggle 0`, `sleep 1 s` outside an I/O operation.
+    Primitive(Primitive<'s>),
+    /// `var x = 3 mm`
+    Variable(VariableDeclaration<'s>),
+    /// `position p`: remember where the arm is, for `move to p`.
+    Remember(Name<'s>),
+    /// `x = e`, `x += e`, `x -= e`
+    Assign {
+        /// The variable.
+        name: Name<'s>,
+        /// How.
+        operator: AssignOperator,
+        /// The value.
+        value: Expression<'s>,
+    },
+    /// `if c { … } else { … } ending when p`: with `ending when` the join is asserted, without it
+    /// recorded. An `else if` is a block of one statement.
+    If {
+        /// The condition.
+        condition: Expression<'s>,
+        /// When it holds.
+        then: Block<'s>,
+        /// When it does not.
+        otherwise: Option<Block<'s>>,
+        /// Holds after the first block and not after the second.
+        ending_when: Option<Expression<'s>>,
+    },
+    /// `while c entered when p { … }`: with `entered when` the join is asserted.
+    While {
+        /// The condition.
+        condition: Expression<'s>,
+        /// Holds when the loop is first entered and not when it comes round again.
+        entered_when: Option<Expression<'s>>,
+        /// The body.
+        body: Block<'s>,
+    },
+    /// `repeat 3 times { … }`
+    Repeat {
+        /// How often.
+        times: Expression<'s>,
+        /// The body.
+        body: Block<'s>,
+    },
+    /// `for i from 0 to 9 { … }`, both ends included.
+    For {
+        /// The counter, which the body cannot assign.
+        name: Name<'s>,
+        /// The first value.
+        first: Expression<'s>,
+        /// The last value.
+        last: Expression<'s>,
+        /// The body.
+        body: Block<'s>,
+    },
+    /// `loop { … }`: for ever, until `break` or an error.
+    Loop(Block<'s>),
+    /// `break`: out of the innermost loop.
+    Break,
+    /// `return`: out of the sequence.
+    Return,
+    /// `speed slow`, until the end of the sequence; `speed slow { … }`, for the block.
+    Speed {
+        /// The speed.
+        speed: Spanned<SpeedWord>,
+        /// Its scope.
+        block: Option<Block<'s>>,
+    },
+    /// `tool gripper`, `tool gripper { … }`
+    Tool {
+        /// The tool's name in the workcell.
+        name: Name<'s>,
+        /// Its scope.
+        block: Option<Block<'s>>,
+    },
+    /// `checkpoint NAME`
+    Checkpoint(Name<'s>),
+    /// `barrier "why"`: nothing before it can be taken back.
+    Barrier(Spanned<&'s str>),
+    /// `irreversible "why" { … }`: what is in it cannot be taken back.
+    Irreversible {
+        /// Why.
+        reason: Spanned<&'s str>,
+        /// The block.
+        block: Block<'s>,
+    },
+    /// `skip in reverse { … }`: in reverse it is passed over.
+    SkipInReverse(Block<'s>),
+    /// `do { … } in reverse { … }`: in reverse the second block is run in place of the first.
+    ReplaceInReverse {
+        /// Forward.
+        block: Block<'s>,
+        /// In reverse.
+        replacement: Block<'s>,
+    },
+    /// `throw NAME`
+    Throw(Name<'s>),
+}
+
+/// Where a move goes.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Target<'s> {
+    /// A joint configuration, a remembered position, or a parameter.
+    Named(Name<'s>),
+    /// `peg.grasp`: a keyframe of an item or of a parameter that is one.
+    Keyframe {
+        /// The item.
+        item: Name<'s>,
+        /// Its keyframe.
+        keyframe: Name<'s>,
+    },
+    /// `move 20 mm up in base`: a straight way from here.
+    Relative {
+        /// How far.
+        distance: Expression<'s>,
+        /// Which way.
+        heading: Spanned<Heading>,
+        /// In which frame; the TCP's where none is named.
+        frame: Option<Spanned<FrameWord>>,
+    },
+}
+
+/// How an assignment changes its variable.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum AssignOperator {
+    /// `=`
+    Set,
+    /// `+=`
+    Add,
+    /// `-=`
+    Subtract,
+}
+
+/// An expression and its place.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Expression<'s> {
+    /// What it is.
+    pub kind: ExpressionKind<'s>,
+    /// Where it is.
+    pub span: Span,
+}
+
+/// An expression. Readings and draws are taken before the statement they stand in.
+#[derive(Clone, Debug, PartialEq)]
+pub enum ExpressionKind<'s> {
+    /// `3`
+    Integer(i64),
+    /// `0.5`
+    Real(f64),
+    /// `0.5 s`, `3 mm`: a number and its unit as written.
+    Quantity {
+        /// The number.
+        value: f64,
+        /// The unit.
+        unit: Name<'s>,
+    },
+    /// `true`, `false`
+    Boolean(bool),
+    /// A variable, a parameter, a joint configuration, an item.
+    Name(&'s str),
+    /// `-e`, `not e`
+    Unary {
+        /// The operator.
+        operator: UnaryOperator,
+        /// Its operand.
+        operand: Box<Expression<'s>>,
+    },
+    /// `a + b`
+    Binary {
+        /// The operator.
+        operator: BinaryOperator,
+        /// Left.
+        left: Box<Expression<'s>>,
+        /// Right.
+        right: Box<Expression<'s>>,
+    },
+    /// `abs(e)`, `min(a, b)`, `random(a, b)`
+    Function {
+        /// The function's name.
+        name: Name<'s>,
+        /// Its arguments.
+        arguments: Vec<Expression<'s>>,
+    },
+    /// `input 3`: whether it is high.
+    Input(Spanned<u64>),
+    /// `force`: the filtered contact force now; in an advanced move's queries, the peak of it.
+    Force,
+    /// `distance`: how far the last move came.
+    Distance,
+    /// `holding`: whether the gripper holds an item.
+    Holding,
+    /// What the parser put where an expression was wrong, so that it could go on.
+    Missing,
+}
+
+/// An operator before its operand.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum UnaryOperator {
+    /// `-`
+    Negate,
+    /// `not`
+    Not,
+}
+
+/// An operator between its operands.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum BinaryOperator {
+    /// `+`
+    Add,
+    /// `-`
+    Subtract,
+    /// `*`
+    Multiply,
+    /// `/`
+    Divide,
+    /// `mod`
+    Remainder,
+    /// `<`
+    Less,
+    /// `<=`
+    LessOrEqual,
+    /// `>`
+    Greater,
+    /// `>=`
+    GreaterOrEqual,
+    /// `==`
+    Equal,
+    /// `!=`
+    NotEqual,
+    /// `and`: both sides are evaluated.
+    And,
+    /// `or`: both sides are evaluated.
+    Or,
+}

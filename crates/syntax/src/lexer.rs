@@ -1,0 +1,328 @@
+//! Source text to the tokens that the grammar reads: numbers joined with their units, assigned
+//! words told from others, what is foreign reported and replaced, what is too deep refused. It
+//! knows the text around a token, and nothing of the grammar.
+
+use crate::codes::Code;
+use crate::diagnostic::Diagnostic;
+use crate::foreign;
+use crate::nesting::{Nesting, Refusal};
+use crate::sink::{MAX_IDLE_TOKENS, Sink, Stopped};
+use crate::span::Span;
+use crate::token::{Token, UNITS};
+use crate::{MAX_NESTING, MAX_OPERATORS};
+use logos::Logos;
+
+/// The tokens of a source text.
+pub(crate) struct Lexer<'s, 'k> {
+    source: &'s str,
+    tokens: logos::Lexer<'s, Token>,
+    sink: &'k Sink<'s>,
+    nesting: Nesting,
+    before_previous: Token,
+    previous: Token,
+    previous_end: usize,
+}
+
+impl<'s, 'k> Lexer<'s, 'k> {
+    /// Reads a text, after its byte order mark if it has one.
+    pub(crate) fn new(source: &'s str, sink: &'k Sink<'s>) -> Self {
+        let mut tokens = Token::lexer(source);
+        if source.starts_with('\u{FEFF}') {
+            tokens.bump('\u{FEFF}'.len_utf8());
+        }
+        let nesting = Nesting::default();
+        let (before_previous, previous) = (Token::Semicolon, Token::Semicolon);
+        Self { source, tokens, sink, nesting, before_previous, previous, previous_end: 0 }
+    }
+
+    /// The next token as the grammar knows it; none where what was read is left out.
+    fn refine(&mut self, raw: Result<Token, ()>) -> Option<Token> {
+        let Ok(token) = raw else { return self.foreign_character() };
+        match token {
+            Token::Integer | Token::Real => Some(self.number(token)),
+            Token::MalformedNumber => Some(self.malformed_number()),
+            _ if token.is_word() => Some(self.word(token)),
+            Token::UnclosedText => {
+                self.report(Code::UnterminatedString, "this text is not closed", |_| {
+                    Some("a text ends with `\"` on the line it begins on".to_owned())
+                });
+                Some(Token::Text)
+            }
+            Token::ForeignText => {
+                self.report(Code::UnexpectedCharacter, "a text stands in double quotes", |text| {
+                    Some(format!("write \"{}\"", text.trim_matches('\'')))
+                });
+                Some(Token::Text)
+            }
+            Token::OpenParenthesis if self.previous == Token::For => {
+                self.foreign_loop();
+                None
+            }
+            Token::ForeignComment => {
+                self.foreign_comment();
+                None
+            }
+            _ => Some(self.sign(token)),
+        }
+    }
+
+    /// A sign, or what is meant by one of another language.
+    fn sign(&self, token: Token) -> Token {
+        let meant = match token {
+            Token::ForeignAnd => Token::And,
+            Token::ForeignOr => Token::Or,
+            Token::ForeignNot => Token::Not,
+            Token::ForeignRemainder => Token::Mod,
+            Token::ForeignAssign => Token::Assign,
+            Token::ForeignNotEqual => Token::NotEqual,
+            _ => return token,
+        };
+        let meant_text = meant.text().unwrap_or_default();
+        let message = format!("`{}` is not an operator here", self.tokens.slice());
+        self.report(Code::ForeignOperator, &message, |_| Some(format!("write `{meant_text}`")));
+        meant
+    }
+
+    fn word(&mut self, token: Token) -> Token {
+        if self.next_byte().is_some_and(|byte| !byte.is_ascii()) {
+            let rest = self.rest();
+            let length = foreign::word_length(rest);
+            if length > 0 {
+                self.tokens.bump(length);
+                self.sink.report(foreign::foreign_word(self.tokens.slice(), self.span()));
+                return Token::Name;
+            }
+        }
+        if token.is_reserved() {
+            return token;
+        }
+        if is_before_assignment(self.rest()) {
+            let is_operand = self.nesting.is_in_expression()
+                || self.previous.wants_operand(self.before_previous) && self.is_same_line();
+            return if is_operand { token } else { Token::Assigned };
+        }
+        if self.previous == Token::CloseBracket && token == Token::Name && self.is_same_line() {
+            return self.unit(token);
+        }
+        token
+    }
+
+    /// A word after `]`.
+    fn unit(&mut self, token: Token) -> Token {
+        let from_word = self.source.get(self.tokens.span().start..).unwrap_or("");
+        match unit_length(from_word) {
+            Some(length) => {
+                self.tokens.bump(length - self.tokens.slice().len());
+                Token::Unit
+            }
+            None => token,
+        }
+    }
+
+    /// A number, with the unit or the wrong unit after it.
+    fn number(&mut self, token: Token) -> Token {
+        let rest = self.rest();
+        let word_and_on = rest.trim_start_matches([' ', '\t']);
+        let blanks = rest.len() - word_and_on.len();
+        let word = &word_and_on[..ascii_word_length(word_and_on)];
+        if word.is_empty() || is_before_assignment(&word_and_on[word.len()..]) {
+            return token;
+        }
+        if let Some(length) = unit_length(word_and_on) {
+            self.tokens.bump(blanks + length);
+            return Token::Quantity;
+        }
+        if Token::lexer(word).next() == Some(Ok(Token::Name)) {
+            self.tokens.bump(blanks + word.len());
+            return Token::BadQuantity;
+        }
+        token
+    }
+
+    /// `5.`, `.5` or, as in other languages, the range `0..9`.
+    fn malformed_number(&mut self) -> Token {
+        let rest = self.rest();
+        if rest.starts_with('.') {
+            let is_range_byte = |byte: &u8| byte.is_ascii_digit() || matches!(byte, b'.' | b'=');
+            self.tokens.bump(rest.bytes().take_while(is_range_byte).count());
+            self.report(Code::MalformedNumber, "this is not a number", |_| {
+                Some("a loop counts `for i from 0 to 9`".to_owned())
+            });
+            return Token::Real;
+        }
+        self.report(Code::MalformedNumber, "a digit is missing beside the point", |text| {
+            let whole = text.starts_with('.');
+            Some(if whole { format!("write `0{text}`") } else { format!("write `{text}0`") })
+        });
+        self.number(Token::Real)
+    }
+
+    /// A character that no token begins with.
+    fn foreign_character(&mut self) -> Option<Token> {
+        let foreign = foreign::read(self.tokens.slice(), self.rest());
+        self.tokens.bump(foreign.length);
+        self.sink.report(foreign::diagnostic(self.tokens.slice(), self.span()));
+        foreign.meant
+    }
+
+    /// `(i = 0; i < 10; i++)`: left out as far as its line goes.
+    fn foreign_loop(&mut self) {
+        let mut depth = 1;
+        let end = self.rest().find(|c: char| {
+            depth += i32::from(c == '(') - i32::from(c == ')');
+            depth == 0 || matches!(c, '\r' | '\n' | '{' | '}')
+        });
+        let is_closed = end.is_some_and(|end| self.rest()[end..].starts_with(')'));
+        let length = end.unwrap_or(self.rest().len());
+        self.tokens.bump(length + usize::from(is_closed));
+        self.report(Code::ForeignLoop, "a loop that counts is not written like this", |_| {
+            Some("write `for i from 0 to 9 { .. }`; both ends are included".to_owned())
+        });
+    }
+
+    fn foreign_comment(&mut self) {
+        let help = "a comment begins with `//` and ends with the line";
+        self.report(Code::UnexpectedCharacter, "comments are not written like this", |_| {
+            Some(help.to_owned())
+        });
+        let rest = self.rest();
+        let line = rest.find(['\r', '\n']).unwrap_or(rest.len());
+        self.tokens.bump(rest.find("*/").map_or(line, |end| end + "*/".len()));
+    }
+
+    fn report(&self, code: Code, message: &str, help: impl FnOnce(&str) -> Option<String>) {
+        let slice = self.tokens.slice();
+        let mut span = self.span();
+        span.end = span.start + slice.trim_end().len() as u32;
+        let mut diagnostic = Diagnostic::error(code, span, message, code.title());
+        diagnostic.help = help(slice);
+        self.sink.report(diagnostic);
+    }
+
+    fn refuse(&self, refusal: Refusal) {
+        let span = self.span();
+        let sign = self.tokens.slice();
+        self.sink.report(match refusal {
+            Refusal::Unmatched => {
+                let message = format!("`{sign}` closes nothing");
+                Diagnostic::error(Code::UnmatchedBracket, span, message, "no bracket is open")
+                    .with_help("remove it, or look for one too many before it")
+            }
+            Refusal::TooDeep => {
+                let message = "blocks and brackets are too deep in one another";
+                let at = format!("this would be level {}", MAX_NESTING + 1);
+                Diagnostic::error(Code::NestingTooDeep, span, message, at)
+                    .with_note(format!("the limit is {MAX_NESTING}; reading ends here"))
+                    .with_help("put the inner part into a sequence and call it")
+            }
+            Refusal::TooManyOperators => {
+                let message = "this expression has too many operators";
+                let at = format!("this would be number {}", MAX_OPERATORS + 1);
+                Diagnostic::error(Code::ExpressionTooLong, span, message, at)
+                    .with_note(format!("the limit is {MAX_OPERATORS}; reading ends here"))
+                    .with_help("name a part of it with `var`")
+            }
+        });
+    }
+
+    /// The parser leaves out one token after the other, and reports nothing before it finds a
+    /// place to go on.
+    fn give_up(&self) {
+        let message = "this is not a program";
+        self.sink.report(
+            Diagnostic::error(Code::UnexpectedToken, self.span(), message, "reading ends here")
+                .with_note(format!("none of the {MAX_IDLE_TOKENS} tokens before it makes sense")),
+        );
+    }
+
+    fn span(&self) -> Span {
+        let range = self.tokens.span();
+        Span::new(range.start as u32, range.end as u32)
+    }
+
+    fn rest(&self) -> &'s str {
+        self.tokens.remainder()
+    }
+
+    fn next_byte(&self) -> Option<u8> {
+        self.source.as_bytes().get(self.tokens.span().end).copied()
+    }
+
+    /// Whether only blanks stand between this token and the one before.
+    fn is_same_line(&self) -> bool {
+        let between = self.source.get(self.previous_end..self.tokens.span().start).unwrap_or("");
+        between.bytes().all(|byte| byte == b' ' || byte == b'\t')
+    }
+}
+
+impl Iterator for Lexer<'_, '_> {
+    type Item = Result<(u32, Token, u32), Stopped>;
+
+    fn next(&mut self) -> Option<Self::Item> {
+        loop {
+            if self.sink.is_full() {
+                return Some(Err(Stopped));
+            }
+            let raw = self.tokens.next()?;
+            let Some(token) = self.refine(raw) else { continue };
+            match self.nesting.observe(token) {
+                Ok(()) => {}
+                Err(refusal) => {
+                    self.refuse(refusal);
+                    if refusal == Refusal::Unmatched {
+                        continue;
+                    }
+                    return Some(Err(Stopped));
+                }
+            }
+            if self.sink.is_idle() {
+                self.give_up();
+                return Some(Err(Stopped));
+            }
+            let Span { start, end } = self.span();
+            (self.before_previous, self.previous) = (self.previous, token);
+            self.previous_end = end as usize;
+            return Some(Ok((start, token, end)));
+        }
+    }
+}
+
+/// The length of the word that a text begins with.
+fn ascii_word_length(text: &str) -> usize {
+    let is_word_byte = |byte: &u8| byte.is_ascii_alphanumeric() || *byte == b'_';
+    let begins = text.bytes().next().is_some_and(|byte| !byte.is_ascii_digit());
+    if begins { text.bytes().take_while(is_word_byte).count() } else { 0 }
+}
+
+/// The length of the unit that a text begins with: `mm`, or `mm/s` written without blanks.
+fn unit_length(text: &str) -> Option<usize> {
+    let word = ascii_word_length(text);
+    let after = &text[word..];
+    if let Some(per) = after.strip_prefix('/') {
+        let whole = word + 1 + ascii_word_length(per);
+        if UNITS.contains(&&text[..whole]) {
+            return Some(whole);
+        }
+    }
+    UNITS.contains(&&text[..word]).then_some(word)
+}
+
+/// Whether a text goes on, after blanks and comments, with `=`, `+=`, `-=` or the foreign `:=`.
+fn is_before_assignment(text: &str) -> bool {
+    let mut rest = text.as_bytes();
+    loop {
+        rest = rest.trim_ascii_start();
+        let Some(comment) = rest.strip_prefix(b"//") else { break };
+        let line = comment.iter().position(|byte| matches!(byte, b'\n' | b'\r'));
+        rest = &comment[line.unwrap_or(comment.len())..];
+    }
+    match rest {
+        [b'=', b'=', ..] => false,
+        [b'=', ..] | [b'+' | b'-' | b':', b'=', ..] => true,
+        _ => false,
+    }
+}
+
+#[cfg(test)]
+#[path = "lexer_tests.rs"]
+mod tests;

@@ -1,0 +1,106 @@
+//! Source text to syntax tree: lexer, grammar, tree, spans, diagnostics.
+//!
+//! [`parse`] is the way in; GRAMMAR.md beside this crate has the grammar on a page. What a program
+//! means (names, types, units, reversal) is not known here.
+
+pub mod ast;
+pub mod codes;
+pub mod diagnostic;
+mod expectation;
+mod foreign;
+mod lexer;
+mod nearest;
+mod nesting;
+mod parse_error;
+mod sink;
+pub mod source;
+pub mod span;
+mod surroundings;
+mod token;
+mod tree;
+
+pub use nearest::nearest;
+pub use token::{FREE_WORDS, RESERVED_WORDS, UNITS};
+
+use codes::Code;
+use diagnostic::Diagnostic;
+use span::Span;
+
+lalrpop_util::lalrpop_mod!(
+    #[allow(
+        clippy::all,
+        clippy::pedantic,
+        clippy::allow_attributes_without_reason,
+        missing_docs,
+        unused,
+        unreachable_pub,
+        reason = "written by lalrpop"
+    )]
+    #[rustfmt::skip]
+    grammar
+);
+
+/// The largest source text that is read, in bytes.
+pub const MAX_SOURCE_BYTES: usize = 256 << 20;
+
+/// How deep blocks, brackets and the links of `else if` chains may be in one another.
+pub const MAX_NESTING: usize = 64;
+
+/// How many operators an expression may have. With [`MAX_NESTING`] this bounds how deep a tree is,
+/// so that one can be walked and dropped by recursion.
+pub const MAX_OPERATORS: usize = 256;
+
+/// What became of a source text.
+#[derive(Clone, Debug, Default)]
+pub struct Parsed<'s> {
+    /// The tree, as far as it could be built: whole if there are no diagnostics; otherwise without
+    /// the statements and declarations that are wrong, and empty if reading ended early.
+    pub program: ast::Program<'s>,
+    /// What is wrong with the text, by place.
+    pub diagnostics: Vec<Diagnostic>,
+}
+
+/// The tree of a source text, and what is wrong with it. Never fails and never panics; at most
+/// twenty mistakes are reported, and reading ends there.
+#[must_use]
+pub fn parse(source: &str) -> Parsed<'_> {
+    if let Some(diagnostic) = refuse(source) {
+        return Parsed { diagnostics: vec![diagnostic], ..Parsed::default() };
+    }
+    let sink = sink::Sink::default();
+    let result =
+        grammar::ProgramParser::new().parse(source, &sink, lexer::Lexer::new(source, &sink));
+    let program = result.map_err(|error| sink.unexpected(error, source.len() as u32));
+    let (diagnostics, syntax_errors, misplaced) = sink.into_parts();
+    let mut program = program.unwrap_or_default();
+    program.items.extend(misplaced);
+    let diagnostics = parse_error::explain(source, diagnostics, &syntax_errors);
+    Parsed { program, diagnostics }
+}
+
+/// A file's bytes as text.
+///
+/// # Errors
+/// A diagnostic if they are not UTF-8.
+pub fn text_of(bytes: &[u8]) -> Result<&str, Box<Diagnostic>> {
+    std::str::from_utf8(bytes).map_err(|error| {
+        let at = error.valid_up_to();
+        Diagnostic::error(Code::NotText, Span::default(), "this file is not text", "not UTF-8")
+            .with_note(format!("byte {at} (counted from 0) is not UTF-8"))
+            .into()
+    })
+}
+
+/// Why a text is not read at all.
+fn refuse(source: &str) -> Option<Diagnostic> {
+    if source.len() > MAX_SOURCE_BYTES {
+        let message = format!("this source text has {} bytes", source.len());
+        let diagnostic =
+            Diagnostic::error(Code::SourceTooLarge, Span::default(), message, "too large");
+        return Some(diagnostic.with_note(format!("the limit is {MAX_SOURCE_BYTES} bytes")));
+    }
+    let zero = source.bytes().position(|byte| byte == 0)?;
+    let span = Span::new(zero as u32, zero as u32 + 1);
+    let diagnostic = Diagnostic::error(Code::NotText, span, "this file is not text", "a NUL byte");
+    Some(diagnostic.with_help("give a source text, not a module or a tape"))
+}

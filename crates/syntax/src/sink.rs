@@ -1,0 +1,205 @@
+//! Where lexer, grammar and tree building put what they find wrong, and how one mistake is kept
+//! from being reported many times. How it is worded is said elsewhere.
+
+use crate::ast::Item;
+use crate::diagnostic::Diagnostic;
+use crate::span::Span;
+use crate::token::Token;
+use lalrpop_util::{ErrorRecovery, ParseError};
+use std::cell::{Cell, RefCell};
+
+/// How many mistakes are reported of one text; reading ends there.
+pub(crate) const MAX_MISTAKES: usize = 20;
+
+/// How often the parser goes on after a mistake or a consequence of one; reading ends there.
+const MAX_RECOVERIES: usize = 100;
+
+/// How many tokens may come in which nothing is built; reading ends there. A program has far fewer:
+/// at most a deep nest of brackets or a row of `-` before an operand.
+pub(crate) const MAX_IDLE_TOKENS: u32 = 2000;
+
+/// The lexer's word that reading ends here.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct Stopped;
+
+/// What the parser says of a token that it could not take.
+pub(crate) type Failure = ParseError<u32, Token, Stopped>;
+
+/// The same, with the tokens that it left out.
+pub(crate) type Recovery = ErrorRecovery<u32, Token, Stopped>;
+
+/// A token that the grammar does not allow where it stands.
+#[derive(Debug)]
+pub(crate) struct SyntaxError {
+    /// The token; at the end of the text an empty span.
+    pub(crate) span: Span,
+    /// None at the end of the text.
+    pub(crate) found: Option<Token>,
+    /// What the grammar allows, as lalrpop names it: `"\"move\""`.
+    pub(crate) expected: Vec<String>,
+}
+
+/// What has been found so far. Shared by the lexer and the parser that reads from it.
+#[derive(Debug, Default)]
+pub(crate) struct Sink<'s> {
+    diagnostics: RefCell<Vec<Diagnostic>>,
+    syntax_errors: RefCell<Vec<SyntaxError>>,
+    misplaced: RefCell<Vec<Item<'s>>>,
+    count: Cell<usize>,
+    recoveries: Cell<usize>,
+    idle_tokens: Cell<u32>,
+    /// The end of the last mistake, while nothing whole has been read since: a further mistake of
+    /// grammar is then taken for a consequence.
+    aftermath: Cell<Option<u32>>,
+    /// The end of the mistake that reaches furthest.
+    furthest: Cell<u32>,
+    block: Cell<BlockKind>,
+    is_outside: Cell<bool>,
+}
+
+/// What is known of the block that is being read.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(crate) enum BlockKind {
+    /// It stands where it belongs, or there is none.
+    #[default]
+    Expected,
+    /// It follows a mistake; whether it has statements in it is not yet known.
+    Unknown,
+    /// It follows a mistake and has no statements: nothing more is said of what is in it.
+    Foreign,
+}
+
+impl<'s> Sink<'s> {
+    /// A mistake that its finder has worded.
+    pub(crate) fn report(&self, diagnostic: Diagnostic) {
+        self.unsettle(diagnostic.primary.span.end);
+        if self.count_one() {
+            self.diagnostics.borrow_mut().push(diagnostic);
+        }
+    }
+
+    /// A token that the parser could not take, and the tokens it left out in order to go on at
+    /// `end`, after which comes `rest`.
+    pub(crate) fn recovered(&self, recovery: Recovery, end: u32, rest: &str) {
+        self.recoveries.set(self.recoveries.get() + 1);
+        self.unexpected(recovery.error, end);
+        // A new line or `;` begins something new.
+        let rest = rest.trim_start_matches([' ', '\t']);
+        if rest.starts_with(['\r', '\n', ';']) || rest.starts_with("//") {
+            self.aftermath.set(None);
+        }
+    }
+
+    /// A token that the parser could not take, the mistake reaching to `end`.
+    pub(crate) fn unexpected(&self, error: Failure, end: u32) {
+        let (span, found, expected) = match error {
+            ParseError::UnrecognizedToken { token: (start, token, end), expected } => {
+                (Span::new(start, end), Some(token), expected)
+            }
+            ParseError::UnrecognizedEof { location, expected } => {
+                (Span::new(location, location), None, expected)
+            }
+            ParseError::ExtraToken { token: (start, token, end) } => {
+                (Span::new(start, end), Some(token), Vec::new())
+            }
+            ParseError::InvalidToken { location } => {
+                (Span::new(location, location), None, Vec::new())
+            }
+            ParseError::User { error: Stopped } => return,
+        };
+        if self.block.get() == BlockKind::Unknown {
+            self.block.set(BlockKind::Foreign);
+        }
+        let is_consequence =
+            self.aftermath.get().is_some() || self.block.get() == BlockKind::Foreign;
+        self.unsettle(end.max(span.start));
+        if !is_consequence && self.count_one() {
+            self.syntax_errors.borrow_mut().push(SyntaxError { span, found, expected });
+        }
+    }
+
+    /// The lexer gives a token: whether nothing has been built of too many by now.
+    pub(crate) fn is_idle(&self) -> bool {
+        self.idle_tokens.set(self.idle_tokens.get() + 1);
+        self.idle_tokens.get() > MAX_IDLE_TOKENS
+    }
+
+    /// A part of the tree has been built, or a separator read.
+    pub(crate) fn built(&self) {
+        self.idle_tokens.set(0);
+    }
+
+    /// Something whole that ends at this place has been read.
+    pub(crate) fn settle(&self, end: u32) {
+        self.built();
+        if self.aftermath.get().is_some_and(|mistake| end > mistake) {
+            self.aftermath.set(None);
+        }
+        if self.block.get() == BlockKind::Unknown {
+            self.block.set(BlockKind::Expected);
+        }
+    }
+
+    /// A block begins that follows a mistake; gives what [`Sink::leave_block`] needs.
+    pub(crate) fn enter_block(&self) -> BlockKind {
+        let outer = self.block.get();
+        if outer == BlockKind::Expected {
+            self.block.set(BlockKind::Unknown);
+        }
+        outer
+    }
+
+    /// That block ends, and with it what followed from the mistake.
+    pub(crate) fn leave_block(&self, outer: BlockKind) {
+        self.block.set(outer);
+        self.aftermath.set(None);
+    }
+
+    /// A declaration that was found in a block: it is kept as if it stood at the top.
+    pub(crate) fn misplaced(&self, item: Item<'s>, diagnostic: Diagnostic) {
+        self.report(diagnostic);
+        self.aftermath.set(None);
+        self.misplaced.borrow_mut().push(item);
+    }
+
+    /// A statement that was found at the top of the file: the first of a row is reported, but not
+    /// where a mistake before has put it there.
+    pub(crate) fn outside(&self, span: Span, diagnostic: impl FnOnce() -> Diagnostic) {
+        let is_consequence = self.aftermath.get().is_some() || self.furthest.get() > span.start;
+        if !self.is_outside.replace(true) && !is_consequence {
+            self.report(diagnostic());
+        }
+        self.aftermath.set(None);
+    }
+
+    /// A declaration that ends at this place has been read where it belongs.
+    pub(crate) fn settle_item(&self, end: u32) {
+        self.is_outside.set(false);
+        self.settle(end);
+    }
+
+    /// Whether reading ends, since enough mistakes have been found.
+    pub(crate) fn is_full(&self) -> bool {
+        self.count.get() >= MAX_MISTAKES || self.recoveries.get() >= MAX_RECOVERIES
+    }
+
+    /// All that was found: what has been worded, what has not, and misplaced declarations.
+    pub(crate) fn into_parts(self) -> (Vec<Diagnostic>, Vec<SyntaxError>, Vec<Item<'s>>) {
+        (
+            self.diagnostics.into_inner(),
+            self.syntax_errors.into_inner(),
+            self.misplaced.into_inner(),
+        )
+    }
+
+    fn unsettle(&self, end: u32) {
+        self.furthest.set(self.furthest.get().max(end));
+        self.aftermath.set(Some(self.furthest.get()));
+    }
+
+    fn count_one(&self) -> bool {
+        let has_room = self.count.get() < MAX_MISTAKES;
+        self.count.set(self.count.get() + usize::from(has_room));
+        has_room
+    }
+}

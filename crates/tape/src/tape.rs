@@ -1,0 +1,188 @@
+//! The tape: its streams, positions on it, the barrier, and how much it has recorded.
+
+use crate::stream::{BitStream, CHUNK, Stream};
+use obverse_geometry::JointConfiguration;
+
+/// What records are written to: a tape, or nothing at all.
+pub trait Recorder {
+    /// Write a bit.
+    fn bit(&mut self, bit: bool);
+    /// Write a word.
+    fn word(&mut self, word: u64);
+    /// Write a joint configuration.
+    fn joints(&mut self, joints: JointConfiguration);
+    /// Whether more has been recorded than may be.
+    fn is_full(&self) -> bool;
+}
+
+/// The recorder of a run that will not go back.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct NoTape;
+
+impl Recorder for NoTape {
+    #[inline(always)]
+    fn bit(&mut self, _: bool) {}
+    #[inline(always)]
+    fn word(&mut self, _: u64) {}
+    #[inline(always)]
+    fn joints(&mut self, _: JointConfiguration) {}
+    #[inline(always)]
+    fn is_full(&self) -> bool {
+        false
+    }
+}
+
+/// A place on the tape: the length of each stream.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
+pub struct Place {
+    /// Recorded joins and output levels.
+    pub bits: u64,
+    /// Values of variables, settings, counters.
+    pub words: u64,
+    /// Joint configurations.
+    pub joints: u64,
+}
+
+impl Place {
+    /// The size of the tape up to here, in bits.
+    #[must_use]
+    pub fn size_bits(&self) -> u64 {
+        self.bits + 64 * self.words + 384 * self.joints
+    }
+}
+
+/// The trace tape.
+#[derive(Clone, Debug)]
+pub struct Tape {
+    pub(crate) bits: BitStream,
+    pub(crate) words: Stream<u64>,
+    pub(crate) joints: Stream<[f64; 6]>,
+    /// What has been recorded and dropped, in bits.
+    dropped_bits: u64,
+    /// The most full chunks of words and bits that may be held.
+    limit_chunks: usize,
+}
+
+/// The most that a tape holds unless told otherwise, in bytes.
+pub const DEFAULT_LIMIT_BYTES: usize = 4 << 30;
+
+impl Default for Tape {
+    fn default() -> Self {
+        Self::with_limit(DEFAULT_LIMIT_BYTES)
+    }
+}
+
+impl Recorder for Tape {
+    #[inline(always)]
+    fn bit(&mut self, bit: bool) {
+        self.bits.push(bit);
+    }
+
+    #[inline(always)]
+    fn word(&mut self, word: u64) {
+        self.words.push(word);
+    }
+
+    #[inline(always)]
+    fn joints(&mut self, joints: JointConfiguration) {
+        self.joints.push(joints.0);
+    }
+
+    #[inline(always)]
+    fn is_full(&self) -> bool {
+        self.words.full_chunks() + self.bits.full_chunks() > self.limit_chunks
+    }
+}
+
+impl Tape {
+    /// An empty tape that holds at most so many bytes.
+    #[must_use]
+    pub fn with_limit(limit_bytes: usize) -> Self {
+        Self {
+            bits: BitStream::default(),
+            words: Stream::default(),
+            joints: Stream::default(),
+            dropped_bits: 0,
+            limit_chunks: limit_bytes / (CHUNK * 8),
+        }
+    }
+
+    /// How far it has come.
+    #[must_use]
+    pub fn place(&self) -> Place {
+        Place {
+            bits: self.bits.len() as u64,
+            words: self.words.len() as u64,
+            joints: self.joints.len() as u64,
+        }
+    }
+
+    /// Whether nothing is on it.
+    #[must_use]
+    pub fn is_empty(&self) -> bool {
+        self.place() == Place::default()
+    }
+
+    /// Drop what has been recorded since a position.
+    pub fn cut(&mut self, to: Place) {
+        let before_bits = self.place().size_bits();
+        self.bits.truncate(to.bits as usize);
+        self.words.truncate(to.words as usize);
+        self.joints.truncate(to.joints as usize);
+        self.dropped_bits += before_bits - self.place().size_bits();
+    }
+
+    /// Nothing before this can be reversed: drop it.
+    pub fn barrier(&mut self) {
+        self.cut(Place::default());
+    }
+
+    /// All that was recorded, whether it has been dropped or not, in bits; what has been reversed
+    /// does not count.
+    #[must_use]
+    pub fn recorded_bits(&self) -> u64 {
+        self.dropped_bits + self.place().size_bits()
+    }
+
+    /// The memory that is held, in bytes.
+    #[must_use]
+    pub fn held_bytes(&self) -> usize {
+        self.bits.held_bytes() + self.words.held_bytes() + self.joints.held_bytes()
+    }
+
+    /// Every record as plain data, oldest first.
+    #[must_use]
+    pub fn streams(&self) -> Streams {
+        Streams {
+            bits: self.bits.iter().collect(),
+            words: self.words.iter().collect(),
+            joints: self.joints.iter().collect(),
+            dropped_bits: self.dropped_bits,
+        }
+    }
+
+    /// The tape of these records.
+    #[must_use]
+    pub fn from_streams(streams: &Streams) -> Self {
+        Self {
+            bits: streams.bits.iter().copied().collect(),
+            words: streams.words.iter().copied().collect(),
+            joints: streams.joints.iter().copied().collect(),
+            dropped_bits: streams.dropped_bits,
+            limit_chunks: DEFAULT_LIMIT_BYTES / (CHUNK * 8),
+        }
+    }
+}
+
+/// The records of a tape as plain data, oldest first.
+#[derive(Clone, Debug, PartialEq, Default, serde::Serialize, serde::Deserialize)]
+pub struct Streams {
+    /// Recorded joins and output levels.
+    pub bits: Vec<bool>,
+    /// Values of variables, settings, counters.
+    pub words: Vec<u64>,
+    /// Joint configurations in radians.
+    pub joints: Vec<[f64; 6]>,
+    /// What was recorded before and dropped, in bits.
+    pub dropped_bits: u64,
+}

@@ -1,0 +1,13 @@
+//! What the tests and the benchmarks share: a workcell of pure bookkeeping, programs, oracles, laws.
+//!
+//! A dev-dependency only: nothing that ships links it.
+
+pub mod code;
+pub mod laws;
+pub mod ledger;
+pub mod logged;
+pub mod machine_laws;
+pub mod programs;
+pub mod reference;
+
+pub use ledger::Ledger;

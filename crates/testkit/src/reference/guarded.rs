@@ -1,0 +1,197 @@
+//! Advanced moves: a motion that a force may stop, what success is, and what follows.
+
+use super::value::Value;
+use super::{Frame, Interpreter, Run, Trap};
+use crate::reference::motion::across;
+use crate::reference::statement::speed;
+use obverse_geometry::JointConfiguration;
+use obverse_syntax::ast::{
+    AdvancedMove, Behaviour, Expression, ExpressionKind, FrameWord, Heading, MoveClause, SpeedWord,
+};
+use obverse_syntax::span::Spanned;
+use obverse_workcell::{Goal, Path};
+
+/// A move that came closer than this to its distance has come all the way, in metres.
+const SHORTFALL_M: f64 = 1e-6;
+/// How far to the side a move is tried again where nothing is said, in metres.
+const PERTURBATION_M: f64 = 1e-3;
+
+/// What an advanced move says.
+#[derive(Default)]
+struct Clauses<'p> {
+    requires: Option<&'p Expression<'p>>,
+    way: Option<Way<'p>>,
+    limit: Option<&'p Expression<'p>>,
+    speed: Option<SpeedWord>,
+    succeeds: Option<&'p Expression<'p>>,
+    on_success: Aftermath<'p>,
+    on_failure: Aftermath<'p>,
+}
+
+/// How far, and in which direction.
+#[derive(Clone, Copy)]
+struct Way<'p> {
+    distance: &'p Expression<'p>,
+    heading: Heading,
+    frame: Option<Spanned<FrameWord>>,
+}
+
+/// What is done afterwards.
+#[derive(Clone, Copy, Default)]
+struct Aftermath<'p> {
+    returns: bool,
+    repeats: Option<(Option<&'p Expression<'p>>, u64)>,
+    throws: Option<&'p str>,
+}
+
+/// The values that hold for all attempts.
+struct Numbers {
+    distance_m: f64,
+    limit_n: f64,
+}
+
+impl<'p> Interpreter<'p, '_> {
+    /// `advance NAME`; what it throws is pending afterwards.
+    pub(super) fn advance(&mut self, name: &str) -> Run<()> {
+        let Some(guarded) = self.names.moves.get(name) else { return Ok(()) };
+        let clauses = gather(guarded);
+        let Some(way) = clauses.way else { return Ok(()) };
+        let frame = Frame { function: guarded.name.value, ..Frame::default() };
+        self.within(frame, |interpreter| interpreter.guarded(&clauses, way))
+    }
+
+    fn guarded(&mut self, clauses: &Clauses<'p>, way: Way<'p>) -> Run<()> {
+        let initial = self.cell.joints();
+        if let Some(condition) = clauses.requires
+            && !self.value(condition)?.holds()
+        {
+            let error = clauses.on_failure.throws.ok_or(Trap::Required)?;
+            self.raised.push(error);
+            return Ok(());
+        }
+        let numbers = self.numbers(clauses, way)?;
+        let succeeded = self.attempts(clauses, way, &numbers, initial)?;
+        let aftermath = if succeeded { clauses.on_success } else { clauses.on_failure };
+        if aftermath.returns {
+            self.go(Goal::Joints(initial), Path::Linear, None)?;
+        }
+        self.raised.extend(aftermath.throws);
+        Ok(())
+    }
+
+    fn numbers(&mut self, clauses: &Clauses<'p>, way: Way<'p>) -> Run<Numbers> {
+        let (distance_m, limit_n) = match clauses.limit {
+            Some(limit) => {
+                let [distance, limit] = self.values([way.distance, limit])?;
+                (distance.real(), limit.real())
+            }
+            // Nothing pushes harder.
+            None => (self.value(way.distance)?.real(), f64::MAX),
+        };
+        Ok(Numbers { distance_m, limit_n })
+    }
+
+    /// Attempts until one succeeds, all but the first from somewhat aside; whether one did.
+    fn attempts(
+        &mut self,
+        clauses: &Clauses<'p>,
+        way: Way<'p>,
+        numbers: &Numbers,
+        initial: JointConfiguration,
+    ) -> Run<bool> {
+        let Some((within, times)) = clauses.on_failure.repeats else {
+            return self.attempt(clauses, way, numbers);
+        };
+        let within_m = match within {
+            Some(within) => self.value(within)?.real(),
+            None => PERTURBATION_M,
+        };
+        for attempt in 0..=times {
+            self.step()?;
+            if attempt > 0 {
+                self.perturb(way, within_m, initial)?;
+            }
+            if self.attempt(clauses, way, numbers)? {
+                return Ok(true);
+            }
+        }
+        Ok(false)
+    }
+
+    /// Back to where the move began, and from there to the side.
+    fn perturb(&mut self, way: Way<'p>, within_m: f64, initial: JointConfiguration) -> Run<()> {
+        let mut aside = || {
+            let drawn = self.cell.draw(self.draws);
+            self.draws = self.draws.wrapping_add(1);
+            (2.0 * drawn - 1.0) * within_m
+        };
+        let (first, second) = (aside(), aside());
+        self.go(Goal::Joints(initial), Path::Linear, None)?;
+        let (by_m, frame) = across(way.heading, way.frame, first, second);
+        let from = self.cell.joints();
+        self.go(Goal::Offset { from, by_m, frame }, Path::Linear, None)?;
+        Ok(())
+    }
+
+    fn attempt(&mut self, clauses: &Clauses<'p>, way: Way<'p>, numbers: &Numbers) -> Run<bool> {
+        let before = self.speed;
+        self.speed = clauses.speed.map_or(before, speed);
+        let goal = self.displaced(numbers.distance_m, way.heading, way.frame);
+        let report = self.go(goal, Path::Linear, Some(numbers.limit_n))?;
+        self.speed = before;
+        let Some(condition) = clauses.succeeds else {
+            return Ok(numbers.distance_m - SHORTFALL_M <= report.distance_m);
+        };
+        self.judged = Some(report);
+        let succeeded = self.value(condition)? == Value::Bool(true);
+        self.judged = None;
+        Ok(succeeded)
+    }
+}
+
+fn gather<'p>(guarded: &'p AdvancedMove<'p>) -> Clauses<'p> {
+    let mut clauses = Clauses::default();
+    for clause in &guarded.clauses {
+        match &clause.value {
+            MoveClause::Requires(condition) => clauses.requires = Some(condition),
+            MoveClause::Distance { distance, heading, frame } => {
+                clauses.way = Some(Way { distance, heading: heading.value, frame: *frame });
+            }
+            MoveClause::StopIf(condition) => clauses.limit = limit(condition),
+            MoveClause::Speed(word) => clauses.speed = Some(*word),
+            MoveClause::SucceedsIf(condition) => clauses.succeeds = Some(condition),
+            MoveClause::OnSuccess(behaviours) => clauses.on_success = aftermath(behaviours),
+            MoveClause::OnFailure(behaviours) => clauses.on_failure = aftermath(behaviours),
+        }
+    }
+    clauses
+}
+
+/// What a force is compared with.
+fn limit<'p>(condition: &'p Expression<'p>) -> Option<&'p Expression<'p>> {
+    match &condition.kind {
+        ExpressionKind::Binary { left, right, .. } => match left.kind {
+            ExpressionKind::Force => Some(right),
+            _ => Some(left),
+        },
+        _ => None,
+    }
+}
+
+/// What follows; behind a `throw` nothing does.
+fn aftermath<'p>(behaviours: &'p [Spanned<Behaviour<'p>>]) -> Aftermath<'p> {
+    let mut aftermath = Aftermath::default();
+    for behaviour in behaviours {
+        match &behaviour.value {
+            Behaviour::ReturnToInitialPosition => aftermath.returns = true,
+            Behaviour::RepeatWithPerturbation { within, times } => {
+                aftermath.repeats = Some((within.as_ref(), times.value));
+            }
+            Behaviour::Throw(name) => {
+                aftermath.throws = Some(name.value);
+                break;
+            }
+        }
+    }
+    aftermath
+}

@@ -1,0 +1,436 @@
+//! The loops over what needs no workcell: values, variables, flow.
+//!
+//! Program counter, operand depth and tape top live in registers here; whatever else an instruction
+//! needs makes the loop return [`Exit::Slow`]. Runs are bounded at back edges, since a count at
+//! every instruction would cost half as much again; how many steps a run has made follows from the
+//! program counter and what the jumps have added to `offset`.
+
+use crate::class::{AfterForward, Always, Failure, Pure};
+use crate::ops::flow::{Course, Way};
+use crate::stop::TrapKind;
+use crate::values::{Values, Variables};
+use obverse_isa::{Instr, Label, for_each_op, op};
+use obverse_tape::{Record, Recorder, Tape, record};
+
+/// Why a loop returned.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Exit {
+    /// The instruction at hand needs more than this loop has.
+    Slow,
+    /// The bound of the run was met.
+    Bound,
+    /// One step was asked for, and made.
+    One,
+    /// The statement that holds this instruction was not done.
+    Trap(usize, TrapKind),
+}
+
+/// Where a run is: the next instruction, and `steps - pc`, wrapping.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Place {
+    pub(crate) pc: usize,
+    pub(crate) offset: u64,
+}
+
+impl Place {
+    /// How many instructions have been run to come here, less those that were reversed.
+    #[inline(always)]
+    pub(crate) fn steps(self) -> u64 {
+        (self.pc as u64).wrapping_add(self.offset)
+    }
+
+    /// Go on behind the instruction at `to`, as one step from the instruction at hand.
+    #[inline(always)]
+    pub(crate) fn jump_forward(&mut self, to: usize) {
+        self.offset = self.offset.wrapping_add(self.pc as u64).wrapping_sub(to as u64);
+        self.pc = to + 1;
+    }
+
+    /// Undo a jump: from behind the instruction at `landed` to behind the one at `from`.
+    #[inline(always)]
+    pub(crate) fn jump_reverse(&mut self, landed: usize, from: usize) {
+        self.offset = self.offset.wrapping_add(landed as u64).wrapping_sub(from as u64);
+        self.pc = from + 1;
+    }
+}
+
+/// The failure of an opcode that commands no workcell.
+#[inline(always)]
+fn trap(at: usize, failure: Failure) -> Exit {
+    match failure {
+        Failure::Trap(kind) => Exit::Trap(at, kind),
+        Failure::Fault(_) => Exit::Slow,
+    }
+}
+
+macro_rules! borrow {
+    ($values:ident) => {
+        Values {
+            operands: &mut *$values.operands,
+            depth: $values.depth,
+            slots: &mut *$values.slots,
+            globals: &mut *$values.globals,
+            fixed: $values.fixed,
+        }
+    };
+}
+
+/// Forward: one opcode, by family and class.
+macro_rules! forward_arm {
+    ($op:expr, $run:ident, value always) => {{
+        if let Err(kind) = $op.run(&mut $run.values) {
+            break Exit::Trap($run.place.pc, kind);
+        }
+        $run.place.pc += 1;
+    }};
+    ($op:expr, $run:ident, variable always) => {{
+        if let Err(failure) = $op.forward(&mut Variables(&mut $run.values)) {
+            break trap($run.place.pc, failure);
+        }
+        $run.values.depth = 0;
+        $run.place.pc += 1;
+    }};
+    ($op:expr, $run:ident, variable after_forward $record:ident) => {{
+        let op = $op;
+        let mut variables = Variables(&mut $run.values);
+        let saved: record::$record = op.save(&variables);
+        saved.push($run.recorder);
+        if let Err(failure) = op.forward(&mut variables, &saved) {
+            break trap($run.place.pc, failure);
+        }
+        $run.values.depth = 0;
+        $run.place.pc += 1;
+    }};
+    ($op:expr, $run:ident, flow always) => {{
+        let mut variables = Variables(&mut $run.values);
+        let mut course = Course { variables: &mut variables, way: Way::Beside };
+        if let Err(failure) = $op.forward(&mut course) {
+            break trap($run.place.pc, failure);
+        }
+        let way = course.way;
+        follow!($run, way);
+    }};
+    ($op:expr, $run:ident, flow after_forward $record:ident) => {{
+        let op = $op;
+        let mut variables = Variables(&mut $run.values);
+        let mut course = Course { variables: &mut variables, way: Way::Beside };
+        let saved: record::$record = op.save(&course);
+        saved.push($run.recorder);
+        if let Err(failure) = op.forward(&mut course, &saved) {
+            break trap($run.place.pc, failure);
+        }
+        let way = course.way;
+        follow!($run, way);
+    }};
+    ($op:expr, $run:ident, $($other:tt)*) => {{
+        let _ = $op;
+        break Exit::Slow;
+    }};
+}
+
+/// Go where a flow opcode said.
+macro_rules! follow {
+    ($run:ident, $way:ident) => {
+        match $way {
+            Way::Beside => {
+                $run.values.depth = 0;
+                $run.place.pc += 1;
+            }
+            Way::Named(target) => {
+                if let Some(exit) = $run.land(target) {
+                    break exit;
+                }
+            }
+        }
+    };
+}
+
+struct Forward<'r, 'a, R> {
+    code: &'r [Instr],
+    values: Values<'a>,
+    place: Place,
+    limit: u64,
+    recorder: &'r mut R,
+}
+
+impl<R: Recorder> Forward<'_, '_, R> {
+    /// Land on the join of a jump, in the jump's step.
+    #[inline(always)]
+    fn land(&mut self, target: Label) -> Option<Exit> {
+        let from = self.place.pc;
+        let to = target.index();
+        match self.code[to] {
+            Instr::Join { .. } => self.recorder.bit(true),
+            Instr::JoinAssert { .. } => {
+                let values = &mut self.values;
+                if let Some(exit) = check_assertion(self.code, borrow!(values), from, to) {
+                    return Some(exit);
+                }
+            }
+            _ => {}
+        }
+        self.values.depth = 0;
+        self.place.jump_forward(to);
+        let is_back_edge = to <= from;
+        let is_bounded = self.place.steps() >= self.limit || self.recorder.is_full();
+        (is_back_edge && is_bounded).then_some(Exit::Bound)
+    }
+}
+
+/// Run the prefix of an asserted join that a jump lands on, which must say so. Takes the values by
+/// parts, so that those of the loop stay in registers.
+#[inline(never)]
+#[cold]
+fn check_assertion(
+    code: &[Instr],
+    mut values: Values<'_>,
+    jump: usize,
+    join: usize,
+) -> Option<Exit> {
+    values.depth = 0;
+    let start = join - usize::from(code[join].prefix());
+    if let Err((at, kind)) = evaluate(code, start, join, &mut values) {
+        return Some(Exit::Trap(at, kind));
+    }
+    (!values.pop_bool()).then_some(Exit::Trap(jump, TrapKind::Assertion { by_jump: true }))
+}
+
+/// Run forward until something else is needed, a back edge passes `limit` steps, or, with `ONE`,
+/// after one step.
+#[inline(never)]
+pub(crate) fn forward<R: Recorder, const ONE: bool>(
+    code: &[Instr],
+    values: &mut Values<'_>,
+    place: &mut Place,
+    limit: u64,
+    recorder: &mut R,
+) -> Exit {
+    let mut run = Forward { code, values: borrow!(values), place: *place, limit, recorder };
+    macro_rules! dispatch {
+        ($(
+            $(#[doc = $doc:literal])+
+            $code:literal $ident:ident $mnemonic:literal ($($field:ident: $ty:ty),*)
+            [$($picture:tt)*] $class:ident $(($payload:tt))? $family:ident;
+        )*) => {
+            loop {
+                match run.code[run.place.pc] {
+                    $(Instr::$ident { $($field,)* } => {
+                        forward_arm!(op::$ident { $($field,)* }, run, $family $class $($payload)?);
+                    })*
+                }
+                if ONE {
+                    break Exit::One;
+                }
+            }
+        };
+    }
+    let exit = for_each_op!(dispatch);
+    *place = run.place;
+    values.depth = run.values.depth;
+    exit
+}
+
+/// Run pure instructions from `start` up to `end`.
+///
+/// # Errors
+/// A trap, with the instruction that made it.
+#[inline(never)]
+pub(crate) fn evaluate(
+    code: &[Instr],
+    start: usize,
+    end: usize,
+    values: &mut Values<'_>,
+) -> Result<(), (usize, TrapKind)> {
+    macro_rules! pure_arm {
+        ($op:expr, $at:ident, value) => {
+            $op.run(values).map_err(|kind| ($at, kind))?
+        };
+        ($op:expr, $at:ident, $other:ident) => {{
+            let _ = $op;
+            return Ok(());
+        }};
+    }
+    macro_rules! dispatch {
+        ($(
+            $(#[doc = $doc:literal])+
+            $code:literal $ident:ident $mnemonic:literal ($($field:ident: $ty:ty),*)
+            [$($picture:tt)*] $class:ident $(($payload:tt))? $family:ident;
+        )*) => {
+            for at in start..end {
+                match code[at] {
+                    $(Instr::$ident { $($field,)* } => {
+                        pure_arm!(op::$ident { $($field,)* }, at, $family);
+                    })*
+                }
+            }
+        };
+    }
+    for_each_op!(dispatch);
+    Ok(())
+}
+
+struct Reverse<'r, 'a> {
+    code: &'r [Instr],
+    way_back: &'r [u32],
+    values: Values<'a>,
+    place: Place,
+    tape: &'r mut Tape,
+}
+
+impl Reverse<'_, '_> {
+    /// Undo the jump at `from` that led to the join at `landed`, and stand before its statement.
+    #[inline(always)]
+    fn undo_jump(&mut self, join: Instr, landed: usize, from: Label) -> Option<Exit> {
+        let from = from.index();
+        let mut variables = Variables(&mut self.values);
+        let mut course = Course { variables: &mut variables, way: Way::Beside };
+        let undone = match (join, self.code[from]) {
+            (Instr::ForTop { counter, .. }, _) => {
+                op::ForNext { counter, target: Label(0) }.reverse(&mut course)
+            }
+            (Instr::ForExit { .. }, Instr::ForEnter { prefix, counter, exit }) => {
+                let Some(saved) = record::Counter::pop(self.tape) else {
+                    return Some(Exit::Trap(from, TrapKind::TapeEmpty));
+                };
+                op::ForEnter { prefix, counter, exit }.reverse(&mut course, &saved)
+            }
+            // Nothing is lost by any other jump.
+            _ => Ok(()),
+        };
+        self.place.jump_reverse(landed, from);
+        self.place.pc = self.way_back[landed] as usize;
+        undone.err().map(|failure| trap(from, failure))
+    }
+
+    /// Run the prefix of the effect at an index, so that its operands are there.
+    #[inline(always)]
+    fn operands(&mut self, effect: usize, prefix: usize) -> Option<Exit> {
+        if prefix == 0 {
+            return None;
+        }
+        let values = &mut self.values;
+        let mut probe = borrow!(values);
+        probe.depth = 0;
+        let ran = evaluate(self.code, effect - prefix, effect, &mut probe);
+        ran.err().map(|(at, kind)| Exit::Trap(at, kind))
+    }
+}
+
+/// Reverse: one opcode, by family and class. `$at` is the instruction, `$prefix` its prefix.
+macro_rules! reverse_arm {
+    ($op:expr, $run:ident, $instr:ident, $at:ident, $prefix:expr, variable always) => {{
+        let prefix = $prefix;
+        if let Some(exit) = $run.operands($at, prefix) {
+            break exit;
+        }
+        if let Err(failure) = $op.reverse(&mut Variables(&mut $run.values)) {
+            break trap($at, failure);
+        }
+        $run.place.pc = $at - prefix;
+    }};
+    ($op:expr, $run:ident, $instr:ident, $at:ident, $prefix:expr, variable after_forward $record:ident) => {{
+        let Some(saved) = record::$record::pop($run.tape) else {
+            break Exit::Trap($at, TrapKind::TapeEmpty);
+        };
+        if let Err(failure) = $op.reverse(&mut Variables(&mut $run.values), &saved) {
+            break trap($at, failure);
+        }
+        $run.place.pc = $at - $prefix;
+    }};
+    ($op:expr, $run:ident, $instr:ident, $at:ident, $prefix:expr, flow always) => {{
+        if matches!($instr, Instr::JoinAssert { .. }) {
+            if let Some(exit) = $run.operands($at, $prefix) {
+                break exit;
+            }
+        }
+        let mut variables = Variables(&mut $run.values);
+        let mut course = Course { variables: &mut variables, way: Way::Beside };
+        if let Err(failure) = $op.reverse(&mut course) {
+            break trap($at, failure);
+        }
+        let way = course.way;
+        retrace!($run, $instr, $at, way);
+    }};
+    ($op:expr, $run:ident, $instr:ident, $at:ident, $prefix:expr, flow after_forward $record:ident) => {{
+        let Some(saved) = record::$record::pop($run.tape) else {
+            break Exit::Trap($at, TrapKind::TapeEmpty);
+        };
+        let mut variables = Variables(&mut $run.values);
+        let mut course = Course { variables: &mut variables, way: Way::Beside };
+        if let Err(failure) = $op.reverse(&mut course, &saved) {
+            break trap($at, failure);
+        }
+        let way = course.way;
+        retrace!($run, $instr, $at, way);
+    }};
+    ($op:expr, $run:ident, $instr:ident, $at:ident, $prefix:expr, $($other:tt)*) => {{
+        let _ = $op;
+        break Exit::Slow;
+    }};
+}
+
+/// Go back where a flow opcode said. A jump is undone in the same step as its landing.
+macro_rules! retrace {
+    ($run:ident, $instr:ident, $at:ident, $way:ident) => {
+        match $way {
+            Way::Beside => $run.place.pc = $at - usize::from($instr.prefix()),
+            Way::Named(from) => {
+                if let Some(exit) = $run.undo_jump($instr, $at, from) {
+                    break exit;
+                }
+            }
+        }
+    };
+}
+
+/// Run in reverse, a statement at a time, until something else is needed, no more than `floor`
+/// steps are left, or, with `ONE`, after one statement. Begins between statements.
+///
+/// `way_back` says for each join where the statement of its jump begins: one load in the chain from
+/// one statement to the one before it, where the label and the jump's prefix would be two.
+#[inline(never)]
+pub(crate) fn reverse<const ONE: bool>(
+    code: &[Instr],
+    way_back: &[u32],
+    values: &mut Values<'_>,
+    place: &mut Place,
+    floor: u64,
+    tape: &mut Tape,
+) -> Exit {
+    let mut run = Reverse { code, way_back, values: borrow!(values), place: *place, tape };
+    run.values.depth = 0;
+    macro_rules! dispatch {
+        ($(
+            $(#[doc = $doc:literal])+
+            $code:literal $ident:ident $mnemonic:literal ($($field:ident: $ty:ty),*)
+            [$($picture:tt)*] $class:ident $(($payload:tt))? $family:ident;
+        )*) => {
+            loop {
+                let Some(at) = run.place.pc.checked_sub(1) else { break Exit::Slow };
+                let instr = run.code[at];
+                match instr {
+                    $(Instr::$ident { $($field,)* } => {
+                        reverse_arm!(
+                            op::$ident { $($field,)* },
+                            run,
+                            instr,
+                            at,
+                            usize::from(0 $(+ obverse_isa::Operand::as_prefix($field))*),
+                            $family $class $($payload)?
+                        );
+                    })*
+                }
+                if ONE {
+                    break Exit::One;
+                }
+                if run.place.steps() <= floor {
+                    break Exit::Bound;
+                }
+            }
+        };
+    }
+    let exit = for_each_op!(dispatch);
+    *place = run.place;
+    values.depth = 0;
+    exit
+}

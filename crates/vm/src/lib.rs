@@ -1,0 +1,32 @@
+//! The reversible machine.
+//!
+//! Code is a row of statements: a pure prefix, which touches the operand stack alone, and one
+//! effect. Going forward the machine saves what the effect needs in order to be undone, appends it
+//! to the tape, and acts. Going in reverse it meets an effect from behind, reads its record, acts,
+//! and only then drops the record; the prefix is skipped, or run forward once more where the
+//! inverse needs its operands. A jump and the join it lands on are one step, so that at every
+//! point between steps the way back is unambiguous.
+//!
+//! Reading order: [`class`], the traits that every effect implements; [`values`], what a pure
+//! instruction sees; `ops`, every opcode by family, forward and reverse side by side; `state`;
+//! `hot`, the loops over what needs no workcell; `step`, everything else; [`machine`], the whole.
+//! The machine knows nothing of source languages, of how a workcell does what it is told, or of
+//! when going back is wise.
+
+pub mod class;
+mod hot;
+pub mod link;
+pub mod machine;
+mod ops;
+mod snapshot;
+pub mod state;
+mod step;
+pub mod stop;
+pub mod values;
+
+pub use link::{LinkError, Links};
+pub use machine::{Limits, Machine, Mark};
+pub use snapshot::SnapshotError;
+pub use state::{Direction, Frame, Pending, State};
+pub use step::{Event, Observer};
+pub use stop::{Refusal, Stop, Trap, TrapKind};

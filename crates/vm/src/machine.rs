@@ -1,0 +1,374 @@
+//! The machine: a verified program, its state, and its tape, run in either direction.
+
+use crate::hot::{self, Exit};
+use crate::link::{LinkError, Links};
+use crate::state::{Direction, Frame, State};
+use crate::step::{Host, Observer, Outcome};
+use crate::stop::Stop;
+use obverse_bytecode::Verified;
+use obverse_isa::Instr;
+use obverse_tape::{NoTape, Tape};
+use obverse_workcell::Workcell;
+use xxhash_rust::xxh3::Xxh3;
+
+/// A reversible machine. The workcell is lent to it for each run, so that whoever drives the
+/// machine can look at the workcell in between.
+#[derive(Debug)]
+pub struct Machine<'p> {
+    pub(crate) program: &'p Verified,
+    pub(crate) constants: Vec<u64>,
+    /// For each join, where the statement of its jump begins.
+    way_back: Vec<u32>,
+    pub(crate) links: Links,
+    pub(crate) state: State,
+    pub(crate) tape: Option<Tape>,
+    pub(crate) commands: u64,
+    pub(crate) executed: u64,
+    /// Whether what is reversed restores the program's state alone and commands nothing.
+    pub(crate) is_muted: bool,
+}
+
+/// When a run ends at the latest.
+#[derive(Clone, Copy, Debug)]
+pub struct Limits {
+    /// After about so many instructions: met at the next back edge, call or act.
+    pub instructions: u64,
+}
+
+impl Limits {
+    /// No limit.
+    pub const NONE: Self = Self { instructions: u64::MAX };
+
+    /// About so many instructions.
+    #[must_use]
+    pub fn instructions(instructions: u64) -> Self {
+        Self { instructions }
+    }
+}
+
+/// A place in the history of a run, to go back to.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub struct Mark {
+    steps: u64,
+}
+
+macro_rules! values {
+    ($machine:ident) => {{
+        let state = &mut $machine.state;
+        let frame = match state.frames.last_mut() {
+            Some(frame) => frame,
+            None => unreachable!("a machine always has the frame of its start"),
+        };
+        $crate::values::Values {
+            operands: &mut state.operands,
+            depth: state.depth,
+            slots: &mut frame.slots,
+            globals: &mut state.globals,
+            fixed: $crate::values::Fixed {
+                constants: &$machine.constants,
+                tools: &$machine.links.tools,
+                settings: state.settings,
+                raised: &state.raised,
+            },
+        }
+    }};
+}
+pub(crate) use values;
+
+fn way_back(code: &[Instr]) -> Vec<u32> {
+    let start_of_jump = |instr: &Instr| {
+        let from = instr.join_from()?;
+        let jump = code.get(from.index())?;
+        Some(from.0 - u32::from(jump.prefix()))
+    };
+    code.iter().map(|instr| start_of_jump(instr).unwrap_or(0)).collect()
+}
+
+impl<'p> Machine<'p> {
+    /// A machine at the start of a program, with an empty tape.
+    ///
+    /// # Errors
+    /// All that the program needs and the workcell lacks.
+    pub fn new(program: &'p Verified, cell: &dyn Workcell) -> Result<Self, Vec<LinkError>> {
+        let module = program.module();
+        let links = Links::new(module, cell)?;
+        let settings = links.settings;
+        let state = State {
+            place: hot::Place { pc: 1, offset: 0 },
+            operands: Box::new([0; 256]),
+            depth: 0,
+            frames: vec![Frame::new(0, &module.functions[0], 0)],
+            globals: vec![0; module.globals.len()],
+            settings,
+            raised: Vec::new(),
+            draws: 0,
+            pending: None,
+            open_blocks: 0,
+            compensations: Vec::new(),
+        };
+        Ok(Self {
+            program,
+            constants: module.constants.iter().map(|constant| constant.bits()).collect(),
+            way_back: way_back(&module.code),
+            links,
+            state,
+            tape: Some(Tape::default()),
+            commands: 0,
+            executed: 0,
+            is_muted: false,
+        })
+    }
+
+    /// The same machine without a tape: it runs forward only.
+    #[must_use]
+    pub fn without_tape(mut self) -> Self {
+        self.tape = None;
+        self
+    }
+
+    /// The same machine with an empty tape that holds at most so many bytes.
+    #[must_use]
+    pub fn with_tape_limit(mut self, limit_bytes: usize) -> Self {
+        self.tape = Some(Tape::with_limit(limit_bytes));
+        self
+    }
+
+    /// Run until something stops it. A limit is met at the next back edge, call or act.
+    pub fn run(
+        &mut self,
+        direction: Direction,
+        limits: Limits,
+        cell: &mut dyn Workcell,
+        observer: &mut dyn Observer,
+    ) -> Stop {
+        let steps = self.state.steps();
+        let bound = match direction {
+            Direction::Forward => steps.saturating_add(limits.instructions),
+            Direction::Reverse => steps.saturating_sub(limits.instructions),
+        };
+        let mut host = Host { cell, observer };
+        loop {
+            if let Err(stop) = self.burst(direction, bound, &mut host) {
+                return stop;
+            }
+            let steps = self.state.steps();
+            let is_over = match direction {
+                Direction::Forward => steps >= bound,
+                Direction::Reverse => steps <= bound && limits.instructions != u64::MAX,
+            };
+            if is_over && self.state.compensations.is_empty() {
+                return Stop::Budget;
+            }
+        }
+    }
+
+    /// Run in reverse until the machine is where the mark was taken.
+    pub fn reverse_to(
+        &mut self,
+        mark: Mark,
+        cell: &mut dyn Workcell,
+        observer: &mut dyn Observer,
+    ) -> Stop {
+        let mut host = Host { cell, observer };
+        while self.state.steps() > mark.steps || !self.state.compensations.is_empty() {
+            if let Err(stop) = self.burst(Direction::Reverse, mark.steps, &mut host) {
+                return stop;
+            }
+        }
+        Stop::AtMark
+    }
+
+    /// One step: forward, an instruction; in reverse, an instruction, with the operands that it
+    /// found. A jump and its landing are one.
+    ///
+    /// # Errors
+    /// Why no step was made, or what the step led to.
+    pub fn step(
+        &mut self,
+        direction: Direction,
+        cell: &mut dyn Workcell,
+        observer: &mut dyn Observer,
+    ) -> Outcome {
+        let mut host = Host { cell, observer };
+        match self.direction_of(direction) {
+            Direction::Forward => self.step_forward(&mut host),
+            Direction::Reverse => self.step_reverse(&mut host),
+        }
+    }
+
+    fn step_forward(&mut self, host: &mut Host<'_>) -> Outcome {
+        if self.state.pending.is_some() {
+            return self.count(|machine| machine.slow_forward(host));
+        }
+        self.count(|machine| match machine.hot_forward::<true>(u64::MAX) {
+            Exit::Slow => machine.slow_forward(host),
+            Exit::Trap(at, kind) => Err(machine.trapped(at, kind)),
+            Exit::One | Exit::Bound => Ok(()),
+        })
+    }
+
+    fn step_reverse(&mut self, host: &mut Host<'_>) -> Outcome {
+        if self.state.depth > 0 && self.state.pending.is_none() {
+            let before = self.state.place.pc - 1;
+            self.state.place.pc = before;
+            return self.load_operands_up_to(before);
+        }
+        self.count(|machine| {
+            let exit = match machine.state.pending {
+                Some(_) => Exit::Slow,
+                None => machine.hot_reverse::<true>(0),
+            };
+            match exit {
+                Exit::Slow => machine.slow_reverse(host),
+                Exit::Trap(at, kind) => Err(machine.trapped(at, kind)),
+                Exit::One | Exit::Bound => Ok(()),
+            }
+        })?;
+        self.show_operands()
+    }
+
+    /// Between statements, going back by instructions: run the prefix, to stand before the effect.
+    fn show_operands(&mut self) -> Outcome {
+        let code = &self.program.module().code;
+        let start = self.state.place.pc;
+        let effect = (start..code.len()).find(|&at| !code[at].info().family.is_pure());
+        let Some(effect) = effect else { return Ok(()) };
+        self.load_operands(effect)?;
+        self.state.place.pc = effect;
+        Ok(())
+    }
+
+    /// Within a prefix: run it again up to an instruction.
+    fn load_operands_up_to(&mut self, at: usize) -> Outcome {
+        let code = &self.program.module().code;
+        let start = self.statement_start(at);
+        self.state.depth = 0;
+        let mut values = values!(self);
+        let ran = hot::evaluate(code, start, at, &mut values);
+        let depth = values.depth;
+        self.state.depth = depth;
+        ran.map_err(|(at, kind)| self.trapped(at, kind))
+    }
+
+    /// As far as the hot loop goes, and one step more.
+    fn burst(&mut self, direction: Direction, bound: u64, host: &mut Host<'_>) -> Outcome {
+        let is_compensating = !self.state.compensations.is_empty();
+        let now = self.direction_of(direction);
+        self.count(|machine| {
+            let exit = match (machine.state.pending, now) {
+                (Some(_), _) => Exit::Slow,
+                (None, Direction::Forward) => {
+                    machine.hot_forward::<false>(if is_compensating { u64::MAX } else { bound })
+                }
+                (None, Direction::Reverse) => {
+                    machine.hot_reverse::<false>(if is_compensating { 0 } else { bound })
+                }
+            };
+            match (exit, now) {
+                (Exit::Trap(at, kind), _) => Err(machine.trapped(at, kind)),
+                (Exit::Bound | Exit::One, _) => machine.check_tape(),
+                (Exit::Slow, Direction::Forward) => machine.slow_forward(host),
+                (Exit::Slow, Direction::Reverse) => machine.slow_reverse(host),
+            }
+        })
+    }
+
+    fn check_tape(&self) -> Outcome {
+        use crate::stop::{Trap, TrapKind};
+        use obverse_tape::Recorder;
+        match &self.tape {
+            Some(tape) if tape.is_full() => {
+                Err(Stop::Trap(Trap { pc: self.state.pc(), kind: TrapKind::TapeFull }))
+            }
+            _ => Ok(()),
+        }
+    }
+
+    /// Count the instructions that something runs, in either direction.
+    fn count(&mut self, run: impl FnOnce(&mut Self) -> Outcome) -> Outcome {
+        let before = self.state.steps();
+        let outcome = run(self);
+        self.executed += self.state.steps().abs_diff(before);
+        outcome
+    }
+
+    fn hot_forward<const ONE: bool>(&mut self, limit: u64) -> Exit {
+        let code = &self.program.module().code;
+        let mut place = self.state.place;
+        let mut values = values!(self);
+        let exit = match &mut self.tape {
+            Some(tape) => hot::forward::<_, ONE>(code, &mut values, &mut place, limit, tape),
+            None => hot::forward::<_, ONE>(code, &mut values, &mut place, limit, &mut NoTape),
+        };
+        let depth = values.depth;
+        self.state.depth = depth;
+        self.state.place = place;
+        exit
+    }
+
+    pub(crate) fn hot_reverse<const ONE: bool>(&mut self, floor: u64) -> Exit {
+        if self.state.depth > 0 {
+            return Exit::Slow;
+        }
+        let code = &self.program.module().code;
+        let mut place = self.state.place;
+        let mut values = values!(self);
+        let Some(tape) = &mut self.tape else {
+            return Exit::Trap(place.pc, crate::stop::TrapKind::NoTape);
+        };
+        let exit = hot::reverse::<ONE>(code, &self.way_back, &mut values, &mut place, floor, tape);
+        self.state.place = place;
+        exit
+    }
+
+    /// While a function is run in place of a reversal, the directions change places.
+    fn direction_of(&self, asked: Direction) -> Direction {
+        if self.state.compensations.len() % 2 == 1 { asked.opposite() } else { asked }
+    }
+
+    /// A mark of where the machine is.
+    #[must_use]
+    pub fn mark(&self) -> Mark {
+        Mark { steps: self.state.steps() }
+    }
+
+    /// The program.
+    #[must_use]
+    pub fn program(&self) -> &'p Verified {
+        self.program
+    }
+
+    /// The machine's part of the state.
+    #[must_use]
+    pub fn state(&self) -> &State {
+        &self.state
+    }
+
+    /// The tape, if there is one.
+    #[must_use]
+    pub fn tape(&self) -> Option<&Tape> {
+        self.tape.as_ref()
+    }
+
+    /// How many commands the workcell was given, in either direction.
+    #[must_use]
+    pub fn commands(&self) -> u64 {
+        self.commands
+    }
+
+    /// How many instructions were run or reversed.
+    #[must_use]
+    pub fn executed(&self) -> u64 {
+        self.executed
+    }
+
+    /// A digest of the whole state: the machine's part, and what it commands of the workcell.
+    #[must_use]
+    pub fn digest(&self, cell: &dyn Workcell) -> u64 {
+        let mut hash = Xxh3::new();
+        let mut sink = |word: u64| hash.update(&word.to_le_bytes());
+        self.state.each_word(&self.program.module().functions, &mut sink);
+        cell.commanded_state(&mut sink);
+        hash.digest()
+    }
+}

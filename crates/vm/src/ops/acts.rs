@@ -1,0 +1,65 @@
+//! What an effect outside the hot loops may touch: operands, the frame, settings, the workcell.
+//! It sees neither the tape nor the program counter.
+
+use crate::link::Links;
+use crate::stop::TrapKind;
+use crate::values::{Settings, Slots};
+use obverse_bytecode::Module;
+use obverse_geometry::JointConfiguration;
+use obverse_isa::{ErrorId, LocalId, SlotId};
+use obverse_workcell::{MotionReport, Speed, ToolId, Workcell};
+
+pub(crate) struct Acts<'a> {
+    pub(crate) operands: &'a Slots,
+    pub(crate) slots: &'a mut Slots,
+    pub(crate) positions: &'a mut [JointConfiguration],
+    pub(crate) settings: &'a mut Settings,
+    pub(crate) raised: &'a mut Vec<ErrorId>,
+    pub(crate) draws: &'a mut u64,
+    pub(crate) module: &'a Module,
+    pub(crate) links: &'a Links,
+    pub(crate) cell: &'a mut dyn Workcell,
+    /// See [`Pending::level_before`](crate::state::Pending::level_before).
+    pub(crate) level_before: Option<bool>,
+    /// What came of the motion that the effect made.
+    pub(crate) report: Option<MotionReport>,
+}
+
+impl Acts<'_> {
+    /// The operand at a place of the stack picture.
+    pub(crate) fn operand(&self, at: usize) -> u64 {
+        self.operands[at]
+    }
+
+    /// The real at a place of the stack picture.
+    pub(crate) fn real(&self, at: usize) -> f64 {
+        f64::from_bits(self.operands[at])
+    }
+
+    /// The module's joint configuration at a place of the stack picture.
+    ///
+    /// # Errors
+    /// If there is none: a value from a tape that was tampered with.
+    pub(crate) fn joints(&self, at: usize) -> Result<JointConfiguration, TrapKind> {
+        let joints = self.module.joints.get(self.operands[at] as usize);
+        joints.map(|(_, values)| JointConfiguration(*values)).ok_or(TrapKind::Foreign)
+    }
+
+    pub(crate) fn local(&mut self, local: LocalId) -> &mut u64 {
+        &mut self.slots[local.index()]
+    }
+
+    pub(crate) fn position(&mut self, slot: SlotId) -> &mut JointConfiguration {
+        &mut self.positions[slot.index()]
+    }
+
+    /// The speed that holds.
+    pub(crate) fn speed(&self) -> Speed {
+        Speed::ALL[self.settings[obverse_isa::Setting::Speed as usize] as usize % Speed::ALL.len()]
+    }
+
+    /// The tool that holds.
+    pub(crate) fn tool(&self) -> ToolId {
+        ToolId(self.settings[obverse_isa::Setting::Tool as usize] as u16)
+    }
+}

@@ -1,0 +1,56 @@
+//! The family `io`: digital outputs and time. An output's settling time belongs to its change, so
+//! that it follows the change in either direction.
+
+use super::acts::Acts;
+use crate::class::{AfterForward, Always, Failure};
+use obverse_isa::op;
+use obverse_tape::record::Bit;
+
+impl Acts<'_> {
+    fn set_and_settle(&mut self, bit: u16, level: bool, settle_s: f64) -> Result<(), Failure> {
+        self.cell.set_output(bit, level)?;
+        self.cell.wait(settle_s)?;
+        Ok(())
+    }
+}
+
+impl AfterForward<Acts<'_>> for op::OutputSet {
+    type Saved = Bit;
+
+    fn save(&self, acts: &Acts<'_>) -> Bit {
+        Bit(acts.cell.output(self.bit.0))
+    }
+
+    fn forward(self, acts: &mut Acts<'_>, _: &Bit) -> Result<(), Failure> {
+        acts.set_and_settle(self.bit.0, self.level.is_high(), acts.real(0))
+    }
+
+    fn reverse(self, acts: &mut Acts<'_>, saved: &Bit) -> Result<(), Failure> {
+        acts.set_and_settle(self.bit.0, saved.0, acts.real(0))
+    }
+}
+
+impl Always<Acts<'_>> for op::OutputToggle {
+    fn forward(self, acts: &mut Acts<'_>) -> Result<(), Failure> {
+        let before = acts.level_before.unwrap_or_else(|| acts.cell.output(self.bit.0));
+        acts.level_before = Some(before);
+        acts.set_and_settle(self.bit.0, !before, acts.real(0))
+    }
+
+    fn reverse(self, acts: &mut Acts<'_>) -> Result<(), Failure> {
+        let before = acts.level_before.unwrap_or_else(|| !acts.cell.output(self.bit.0));
+        acts.level_before = Some(before);
+        acts.set_and_settle(self.bit.0, before, acts.real(0))
+    }
+}
+
+impl Always<Acts<'_>> for op::Wait {
+    fn forward(self, acts: &mut Acts<'_>) -> Result<(), Failure> {
+        Ok(acts.cell.wait(acts.real(0))?)
+    }
+
+    fn reverse(self, _: &mut Acts<'_>) -> Result<(), Failure> {
+        // What was waited for has happened.
+        Ok(())
+    }
+}

@@ -1,0 +1,129 @@
+//! The family `kinematic`: motions, which go back to where they started.
+//!
+//! What is recorded is where the joints were: a pose would leave the turn of the wrist open. Goals
+//! are absolute, counted from the recorded start, so that a motion that was interrupted can be
+//! commanded again in either direction. A motion reverses along the path it took.
+
+use super::acts::Acts;
+use crate::class::{AfterForward, Always, Failure};
+use crate::stop::TrapKind;
+use obverse_geometry::{JointConfiguration, Pose};
+use obverse_isa::{self as isa, op};
+use obverse_tape::record::Joints;
+use obverse_workcell::{Goal, Motion, Path};
+
+fn path(path: isa::Path) -> Path {
+    match path {
+        isa::Path::Joint => Path::Joint,
+        isa::Path::Linear => Path::Linear,
+    }
+}
+
+fn frame(frame: isa::Frame) -> obverse_geometry::Frame {
+    match frame {
+        isa::Frame::Tcp => obverse_geometry::Frame::Tcp,
+        isa::Frame::ToolMount => obverse_geometry::Frame::ToolMount,
+        isa::Frame::Base => obverse_geometry::Frame::Base,
+    }
+}
+
+fn axis(axis: isa::Axis) -> obverse_geometry::Axis {
+    match axis {
+        isa::Axis::PlusX => obverse_geometry::Axis::PlusX,
+        isa::Axis::MinusX => obverse_geometry::Axis::MinusX,
+        isa::Axis::PlusY => obverse_geometry::Axis::PlusY,
+        isa::Axis::MinusY => obverse_geometry::Axis::MinusY,
+        isa::Axis::PlusZ => obverse_geometry::Axis::PlusZ,
+        isa::Axis::MinusZ => obverse_geometry::Axis::MinusZ,
+    }
+}
+
+impl Acts<'_> {
+    fn go(&mut self, goal: Goal, path: Path, force_limit_n: Option<f64>) -> Result<(), Failure> {
+        let motion = Motion { goal, path, speed: self.speed(), tool: self.tool(), force_limit_n };
+        self.report = Some(self.cell.execute(&motion)?);
+        Ok(())
+    }
+
+    fn go_back(&mut self, to: &Joints, path: Path) -> Result<(), Failure> {
+        self.go(Goal::Joints(to.0), path, None)
+    }
+
+    fn start(&self) -> Joints {
+        Joints(self.cell.joints())
+    }
+}
+
+/// Motions: which path they take, and what their goal is, given where they started.
+macro_rules! motions {
+    ($($op:ident($this:ident, $acts:ident, $start:ident)
+        $path:expr => $goal:expr, $limit:expr;)*) => {$(
+        impl AfterForward<Acts<'_>> for op::$op {
+            type Saved = Joints;
+
+            fn save(&self, acts: &Acts<'_>) -> Joints {
+                acts.start()
+            }
+
+            fn forward(self, $acts: &mut Acts<'_>, $start: &Joints) -> Result<(), Failure> {
+                let ($this, _) = (self, $start);
+                let goal = $goal;
+                let limit = $limit;
+                $acts.go(goal, $path, limit)
+            }
+
+            fn reverse(self, acts: &mut Acts<'_>, start: &Joints) -> Result<(), Failure> {
+                let $this = self;
+                let _ = $this;
+                acts.go_back(start, $path)
+            }
+        }
+    )*};
+}
+
+motions! {
+    MoveJoint(_op, acts, start) Path::Joint => Goal::Joints(acts.joints(0)?), None;
+    MoveLinear(_op, acts, start) Path::Linear => Goal::Joints(acts.joints(0)?), None;
+    MoveItem(op, acts, start) path(op.path) => {
+        Goal::Pose(keyframe_pose(acts, op.keyframe)?)
+    }, None;
+    MoveRelative(op, acts, start) Path::Linear => Goal::Displaced {
+        from: start.0,
+        distance_m: acts.real(0),
+        axis: axis(op.axis),
+        frame: frame(op.frame),
+    }, None;
+    MoveOffset(op, acts, start) Path::Linear => Goal::Offset {
+        from: start.0,
+        by_m: [acts.real(0), acts.real(1), acts.real(2)],
+        frame: frame(op.frame),
+    }, None;
+    MoveGuarded(op, acts, start) Path::Linear => Goal::Displaced {
+        from: start.0,
+        distance_m: acts.real(0),
+        axis: axis(op.axis),
+        frame: frame(op.frame),
+    }, Some(acts.real(1));
+    MoveSlot(op, acts, start) path(op.path) => Goal::Joints(*acts.position(op.slot)), None;
+}
+
+fn keyframe_pose(acts: &Acts<'_>, keyframe: isa::KeyframeId) -> Result<Pose, Failure> {
+    let index = acts.operand(0) as usize;
+    let item = acts.module.items.get(index).ok_or(TrapKind::Foreign)?;
+    let found = item.keyframes.iter().find(|candidate| candidate.name == keyframe.0);
+    let keyframe = found.ok_or(TrapKind::NoKeyframe)?;
+    let nominal = acts.cell.nominal_pose(acts.links.items[index]).ok_or(TrapKind::NoKeyframe)?;
+    Ok(nominal.compose(&Pose::from_rotation_vector(keyframe.position_m, keyframe.rotation_rad)))
+}
+
+impl Always<Acts<'_>> for op::MoveAlways {
+    fn forward(self, acts: &mut Acts<'_>) -> Result<(), Failure> {
+        let goal: JointConfiguration = acts.joints(1)?;
+        acts.go(Goal::Joints(goal), path(self.path), None)
+    }
+
+    fn reverse(self, acts: &mut Acts<'_>) -> Result<(), Failure> {
+        let goal: JointConfiguration = acts.joints(0)?;
+        acts.go(Goal::Joints(goal), path(self.path), None)
+    }
+}

@@ -1,0 +1,97 @@
+//! The family `sense`: readings of the outside, stored into a variable; what was there is saved.
+
+use super::acts::Acts;
+use crate::class::{AfterForward, Failure};
+use obverse_isa::op;
+use obverse_tape::record::{Joints, Word};
+
+/// Readings into a local: what is read.
+macro_rules! readings {
+    ($($op:ident($this:ident, $acts:ident) => $reading:expr;)*) => {$(
+        impl AfterForward<Acts<'_>> for op::$op {
+            type Saved = Word;
+
+            fn save(&self, acts: &Acts<'_>) -> Word {
+                Word(acts.slots[self.local.index()])
+            }
+
+            fn forward(self, $acts: &mut Acts<'_>, _: &Word) -> Result<(), Failure> {
+                let $this = self;
+                let reading: u64 = $reading;
+                *$acts.local($this.local) = reading;
+                Ok(())
+            }
+
+            fn reverse(self, acts: &mut Acts<'_>, saved: &Word) -> Result<(), Failure> {
+                *acts.local(self.local) = saved.0;
+                Ok(())
+            }
+        }
+    )*};
+}
+
+readings! {
+    SenseInput(op, acts) => u64::from(acts.cell.input(op.bit.0)?);
+    SenseForce(op, acts) => acts.cell.force_n().to_bits();
+    SenseDistance(op, acts) => acts.cell.last_motion().distance_m.to_bits();
+    SensePeakForce(op, acts) => acts.cell.last_motion().peak_force_n.to_bits();
+    SenseHolding(op, acts) => u64::from(acts.cell.held().is_some());
+    WaitInput(op, acts) => u64::from(wait_for(acts, op)?);
+}
+
+/// How often an input is looked at while it is waited for, in seconds.
+const POLL_S: f64 = 0.01;
+/// The most looks at an input that is waited for: more than a day of them.
+const MAX_POLLS: f64 = 1e7;
+
+/// Counts the looks, and not the time that has passed, since a clock that is far on may not be moved
+/// by the little that is left to wait.
+fn wait_for(acts: &mut Acts<'_>, op: op::WaitInput) -> Result<bool, Failure> {
+    let longest_s = acts.real(0);
+    let polls = (longest_s / POLL_S).clamp(0.0, MAX_POLLS);
+    for _ in 0..polls.ceil() as u64 {
+        if acts.cell.input(op.bit.0)? == op.level.is_high() {
+            return Ok(true);
+        }
+        acts.cell.wait(POLL_S.min(longest_s))?;
+    }
+    Ok(acts.cell.input(op.bit.0)? == op.level.is_high())
+}
+
+impl AfterForward<Acts<'_>> for op::Draw {
+    type Saved = Word;
+
+    fn save(&self, acts: &Acts<'_>) -> Word {
+        Word(acts.slots[self.local.index()])
+    }
+
+    fn forward(self, acts: &mut Acts<'_>, _: &Word) -> Result<(), Failure> {
+        *acts.local(self.local) = acts.cell.draw(*acts.draws).to_bits();
+        *acts.draws = acts.draws.wrapping_add(1);
+        Ok(())
+    }
+
+    fn reverse(self, acts: &mut Acts<'_>, saved: &Word) -> Result<(), Failure> {
+        *acts.local(self.local) = saved.0;
+        *acts.draws = acts.draws.wrapping_sub(1);
+        Ok(())
+    }
+}
+
+impl AfterForward<Acts<'_>> for op::Remember {
+    type Saved = Joints;
+
+    fn save(&self, acts: &Acts<'_>) -> Joints {
+        Joints(acts.positions[self.slot.index()])
+    }
+
+    fn forward(self, acts: &mut Acts<'_>, _: &Joints) -> Result<(), Failure> {
+        *acts.position(self.slot) = acts.cell.joints();
+        Ok(())
+    }
+
+    fn reverse(self, acts: &mut Acts<'_>, saved: &Joints) -> Result<(), Failure> {
+        *acts.position(self.slot) = saved.0;
+        Ok(())
+    }
+}

@@ -1,0 +1,178 @@
+//! A machine's state as plain data, and back again from data that may be hostile.
+
+use crate::hot::Place;
+use crate::link::Links;
+use crate::machine::Machine;
+use crate::state::{Direction, Frame, MAX_FRAMES, Pending};
+use obverse_bytecode::{Module, Verified};
+use obverse_geometry::JointConfiguration;
+use obverse_isa::{ErrorId, Instr};
+use obverse_tape::{FrameSnapshot, Snapshot, Streams, Tape, record};
+use obverse_workcell::Workcell;
+use std::fmt;
+
+/// A snapshot that is of no run of the program.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct SnapshotError {
+    /// What does not fit.
+    pub what: &'static str,
+}
+
+impl fmt::Display for SnapshotError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "the recorded state is not one of this program: its {} does not fit", self.what)
+    }
+}
+
+impl std::error::Error for SnapshotError {}
+
+impl<'p> Machine<'p> {
+    /// The state as plain data. A function that runs in place of a reversal is not kept: the
+    /// machine is shown where it stood before that.
+    #[must_use]
+    pub fn snapshot(&self, cell: &dyn Workcell) -> Snapshot {
+        let state = &self.state;
+        let module = self.program.module();
+        let outermost = state.compensations.first();
+        let place = outermost.map_or(state.place, |compensation| compensation.place);
+        let frames = outermost.map_or(state.frames.len(), |compensation| compensation.frames - 1);
+        let frame = |frame: &Frame| {
+            let saved = frame.save(&module.functions[usize::from(frame.function)]);
+            FrameSnapshot {
+                function: frame.function,
+                return_pc: frame.return_pc,
+                words: saved.words,
+                positions: saved.joints.iter().map(|joints| joints.0).collect(),
+            }
+        };
+        let pending =
+            |pending: Pending| (pending.direction == Direction::Reverse, pending.level_before);
+        Snapshot {
+            pc: place.pc as u32,
+            steps: place.steps(),
+            operands: if outermost.is_some() { Vec::new() } else { state.operands().to_vec() },
+            frames: state.frames[..frames].iter().map(frame).collect(),
+            globals: state.globals.clone(),
+            settings: state.settings,
+            raised: state.raised.iter().map(|error| error.0).collect(),
+            draws: state.draws,
+            open_blocks: state.open_blocks,
+            pending: state.pending.filter(|_| outermost.is_none()).map(pending),
+            joints: cell.joints().0,
+            outputs: (0..cell.output_count()).map(|bit| cell.output(bit)).collect(),
+        }
+    }
+
+    /// The records of the tape as plain data; none without a tape.
+    #[must_use]
+    pub fn streams(&self) -> Streams {
+        let mut tape = match &self.tape {
+            Some(tape) => tape.clone(),
+            None => return Streams::default(),
+        };
+        if let Some(outermost) = self.state.compensations.first() {
+            tape.cut(outermost.tape);
+        }
+        tape.streams()
+    }
+
+    /// The machine of a recording. It is there to be looked at and walked back: names are not
+    /// linked to a workcell.
+    ///
+    /// # Errors
+    /// If the state is none of the program.
+    pub fn from_recording(
+        program: &'p Verified,
+        snapshot: &Snapshot,
+        streams: &Streams,
+        cell: &dyn Workcell,
+    ) -> Result<Self, SnapshotError> {
+        let module = program.module();
+        check(module, snapshot)?;
+        let mut machine =
+            Self::new(program, cell).map_err(|_| SnapshotError { what: "workcell" })?;
+        let state = &mut machine.state;
+        state.place = Place {
+            pc: snapshot.pc as usize,
+            offset: snapshot.steps.wrapping_sub(u64::from(snapshot.pc)),
+        };
+        state.depth = snapshot.operands.len() as u8;
+        state.operands[..snapshot.operands.len()].copy_from_slice(&snapshot.operands);
+        state.frames = snapshot.frames.iter().map(|frame| restore_frame(module, frame)).collect();
+        state.globals.clone_from(&snapshot.globals);
+        state.settings = snapshot.settings;
+        state.raised = snapshot.raised.iter().map(|&error| ErrorId(error)).collect();
+        state.draws = snapshot.draws;
+        state.open_blocks = snapshot.open_blocks;
+        state.pending = snapshot.pending.map(|(is_reverse, level_before)| Pending {
+            direction: if is_reverse { Direction::Reverse } else { Direction::Forward },
+            level_before,
+        });
+        machine.links = Links {
+            items: vec![obverse_workcell::ItemId(0); module.items.len()],
+            tools: vec![0; module.tools.len()],
+            settings: snapshot.settings,
+        };
+        machine.tape = Some(Tape::from_streams(streams));
+        Ok(machine)
+    }
+}
+
+fn restore_frame(module: &Module, frame: &FrameSnapshot) -> Frame {
+    let saved = record::Frame {
+        words: frame.words.clone(),
+        joints: frame.positions.iter().map(|&joints| JointConfiguration(joints)).collect(),
+    };
+    let declared = &module.functions[usize::from(frame.function)];
+    Frame::restore(frame.function, declared, frame.return_pc, saved)
+}
+
+fn check(module: &Module, snapshot: &Snapshot) -> Result<(), SnapshotError> {
+    let fits = |fits: bool, what: &'static str| {
+        if fits { Ok(()) } else { Err(SnapshotError { what }) }
+    };
+    let innermost = snapshot.frames.last().map(|frame| usize::from(frame.function));
+    fits((1..=MAX_FRAMES).contains(&snapshot.frames.len()), "number of calls")?;
+    fits(module.function_at(snapshot.pc).is_some_and(|at| Some(at) == innermost), "position")?;
+    fits(module.functions[innermost.unwrap_or(0)].first < snapshot.pc, "position")?;
+    fits(snapshot.globals.len() == module.globals.len(), "number of variables")?;
+    fits(snapshot.raised.iter().all(|&error| usize::from(error) < module.errors.len()), "errors")?;
+    fits(operands_fit(module, snapshot), "operand stack")?;
+    let mut caller: Option<usize> = None;
+    for frame in &snapshot.frames {
+        let index = usize::from(frame.function);
+        let declared = module.functions.get(index).ok_or(SnapshotError { what: "call" })?;
+        let saved = (frame.words.len(), frame.positions.len());
+        fits(saved == Frame::saved_size(declared), "call")?;
+        fits(calls(module, caller, frame), "call")?;
+        caller = Some(index);
+    }
+    Ok(())
+}
+
+/// Whether a frame was made by a call in its caller; the first is the start, which nobody calls.
+fn calls(module: &Module, caller: Option<usize>, frame: &FrameSnapshot) -> bool {
+    let Some(caller) = caller else { return frame.function == 0 };
+    let Some(at) = frame.return_pc.checked_sub(1) else { return false };
+    let is_call = matches!(
+        module.code.get(at as usize),
+        Some(Instr::Call { function, .. }) if function.0 == frame.function
+    );
+    is_call && module.function_at(at) == Some(caller)
+}
+
+/// Within a prefix there are as many operands as the instructions before have left; an act that was
+/// not finished going forward has all of its own.
+fn operands_fit(module: &Module, snapshot: &Snapshot) -> bool {
+    let at = snapshot.pc as usize;
+    let effect = (at..module.code.len()).find(|&at| !module.code[at].info().family.is_pure());
+    let Some(effect) = effect else { return false };
+    let start = effect - usize::from(module.code[effect].prefix());
+    let mut height = 0;
+    for instr in &module.code[start..at.max(start)] {
+        let info = instr.info();
+        height += info.pushes.len();
+        height = height.saturating_sub(info.pops.len());
+    }
+    height == snapshot.operands.len()
+}

@@ -1,0 +1,225 @@
+//! The state of a machine: all that a program can observe or command, but for the workcell's part.
+
+use crate::hot::Place;
+use crate::values::{Settings, Slots};
+use obverse_bytecode::Function;
+use obverse_geometry::JointConfiguration;
+use obverse_isa::ErrorId;
+use obverse_tape::Place as TapePlace;
+use obverse_tape::record;
+
+/// The most calls that may be under way.
+pub const MAX_FRAMES: usize = 1024;
+
+/// Which way a machine runs.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Direction {
+    /// As the program is written.
+    Forward,
+    /// Back over what was run.
+    Reverse,
+}
+
+impl Direction {
+    /// The other direction.
+    #[must_use]
+    pub fn opposite(self) -> Self {
+        match self {
+            Self::Forward => Self::Reverse,
+            Self::Reverse => Self::Forward,
+        }
+    }
+}
+
+/// A call under way.
+#[derive(Clone, Debug)]
+pub struct Frame {
+    /// The function, as an index into the module's.
+    pub function: u16,
+    /// Where the caller goes on.
+    pub return_pc: u32,
+    pub(crate) slots: Box<Slots>,
+    pub(crate) positions: Vec<JointConfiguration>,
+}
+
+/// An act that was begun and not finished.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub struct Pending {
+    /// Which way it was done. Its record is on the tape either way: it is written before the act,
+    /// and dropped after its reversal.
+    pub direction: Direction,
+    /// The level that a toggled output had before the instruction: a toggle that may or may not
+    /// have happened can only be repeated as an absolute level.
+    pub level_before: Option<bool>,
+}
+
+/// A function that is run in place of the reversal of a block.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Compensation {
+    /// How many frames there are while it runs.
+    pub(crate) frames: usize,
+    /// The tape when it began.
+    pub(crate) tape: TapePlace,
+    /// Where the machine was: behind the `block.replace`.
+    pub(crate) place: Place,
+}
+
+/// The machine's part of the state.
+#[derive(Clone, Debug)]
+pub struct State {
+    pub(crate) place: Place,
+    pub(crate) operands: Box<Slots>,
+    pub(crate) depth: u8,
+    pub(crate) frames: Vec<Frame>,
+    pub(crate) globals: Vec<u64>,
+    pub(crate) settings: Settings,
+    pub(crate) raised: Vec<ErrorId>,
+    pub(crate) draws: u64,
+    pub(crate) pending: Option<Pending>,
+    /// How many blocks with a reverse of their own are open: their starts must stay on the tape.
+    pub(crate) open_blocks: u32,
+    pub(crate) compensations: Vec<Compensation>,
+}
+
+impl Frame {
+    pub(crate) fn new(index: u16, function: &Function, return_pc: u32) -> Self {
+        Self {
+            function: index,
+            return_pc,
+            slots: Box::new([0; 256]),
+            positions: vec![JointConfiguration::ZERO; function.slots.len()],
+        }
+    }
+
+    /// The words that a function uses: locals, then counters from the top.
+    fn used(function: &Function) -> impl Iterator<Item = usize> + use<> {
+        let counters = 3 * usize::from(function.counters);
+        (0..function.locals.len()).chain((0..counters).map(|at| 255 - at))
+    }
+
+    /// What must be saved when the frame dies.
+    pub(crate) fn save(&self, function: &Function) -> record::Frame {
+        record::Frame {
+            words: Self::used(function).map(|slot| self.slots[slot]).collect(),
+            joints: self.positions.clone(),
+        }
+    }
+
+    /// The frame that was saved.
+    pub(crate) fn restore(
+        index: u16,
+        function: &Function,
+        return_pc: u32,
+        saved: record::Frame,
+    ) -> Self {
+        let mut frame = Self::new(index, function, return_pc);
+        for (slot, word) in Self::used(function).zip(saved.words) {
+            frame.slots[slot] = word;
+        }
+        frame.positions = saved.joints;
+        frame
+    }
+
+    /// How many words and joint configurations are saved when a frame of a function dies.
+    pub(crate) fn saved_size(function: &Function) -> (usize, usize) {
+        (Self::used(function).count(), function.slots.len())
+    }
+
+    /// A local variable.
+    #[must_use]
+    pub fn local(&self, index: u8) -> u64 {
+        self.slots[usize::from(index)]
+    }
+
+    /// The positions that it remembers.
+    #[must_use]
+    pub fn positions(&self) -> &[JointConfiguration] {
+        &self.positions
+    }
+}
+
+impl State {
+    /// The next instruction.
+    #[must_use]
+    pub fn pc(&self) -> u32 {
+        self.place.pc as u32
+    }
+
+    /// How many instructions lie between the start of the program and here.
+    #[must_use]
+    pub fn steps(&self) -> u64 {
+        self.place.steps()
+    }
+
+    /// The operand stack, bottom first; empty between statements.
+    #[must_use]
+    pub fn operands(&self) -> &[u64] {
+        &self.operands[..usize::from(self.depth)]
+    }
+
+    /// The calls under way, outermost first.
+    #[must_use]
+    pub fn frames(&self) -> &[Frame] {
+        &self.frames
+    }
+
+    /// The variables of the program.
+    #[must_use]
+    pub fn globals(&self) -> &[u64] {
+        &self.globals
+    }
+
+    /// The settings by identity.
+    #[must_use]
+    pub fn settings(&self) -> Settings {
+        self.settings
+    }
+
+    /// The errors that are pending, oldest first.
+    #[must_use]
+    pub fn raised(&self) -> &[ErrorId] {
+        &self.raised
+    }
+
+    /// How many random numbers have been drawn.
+    #[must_use]
+    pub fn draws(&self) -> u64 {
+        self.draws
+    }
+
+    /// The act that was begun and not finished.
+    #[must_use]
+    pub fn pending(&self) -> Option<Pending> {
+        self.pending
+    }
+
+    /// Whether a function is being run in place of the reversal of a block.
+    #[must_use]
+    pub fn is_compensating(&self) -> bool {
+        !self.compensations.is_empty()
+    }
+
+    /// Every word of the state, in an order that depends on the state alone.
+    pub(crate) fn each_word(&self, functions: &[Function], sink: &mut dyn FnMut(u64)) {
+        sink(self.place.pc as u64);
+        sink(u64::from(self.depth));
+        self.operands().iter().copied().for_each(&mut *sink);
+        for frame in &self.frames {
+            sink(u64::from(frame.function) << 32 | u64::from(frame.return_pc));
+            let function = &functions[usize::from(frame.function)];
+            Frame::used(function).map(|slot| frame.slots[slot]).for_each(&mut *sink);
+            frame.positions.iter().flat_map(JointConfiguration::bits).for_each(&mut *sink);
+        }
+        self.globals.iter().copied().for_each(&mut *sink);
+        self.settings.into_iter().for_each(&mut *sink);
+        sink(self.raised.len() as u64);
+        self.raised.iter().map(|error| u64::from(error.0)).for_each(&mut *sink);
+        sink(self.draws);
+        sink(self.pending.map_or(0, |pending| match pending.direction {
+            Direction::Forward => 1,
+            Direction::Reverse => 2,
+        }));
+        sink(u64::from(self.open_blocks));
+        sink(self.compensations.len() as u64);
+    }
+}

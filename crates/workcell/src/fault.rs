@@ -1,0 +1,149 @@
+//! Faults: the workcell did not do as commanded.
+//!
+//! A fault is data with the numbers a person needs; what follows from it is decided elsewhere.
+
+use std::fmt;
+
+/// Why the workcell did not do as commanded.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Fault {
+    /// A goal, or the way to it, leaves the range of a joint (numbered from 1).
+    JointLimit {
+        /// From 1 at the base to 6 at the wrist.
+        joint: u8,
+        /// What it would have to be, in radians.
+        value_rad: f64,
+        /// The range it has, in radians.
+        range_rad: (f64, f64),
+    },
+    /// No joint configuration reaches the goal or a point of the straight line to it.
+    OutOfReach {
+        /// The point that cannot be reached, metres in the base frame.
+        at_m: [f64; 3],
+    },
+    /// A straight line passes too near a singularity to be followed.
+    Singular {
+        /// Where along the path, 0 to 1.
+        fraction: f64,
+    },
+    /// The arm, the tool or the held item met something the motion was not allowed to touch.
+    Collision {
+        /// The part of the robot, or the held item.
+        body: String,
+        /// What it met.
+        with: String,
+        /// Where along the path, 0 to 1.
+        fraction: f64,
+        /// The contact force when the arm stopped, in newtons.
+        force_n: f64,
+    },
+    /// The arm was stopped on the way and holds its position.
+    ProtectiveStop {
+        /// Where along the path, 0 to 1.
+        fraction: f64,
+    },
+    /// A command was refused since the arm is stopped and has not been released.
+    Stopped,
+    /// A number in a command is not one the workcell can act on.
+    BadCommand {
+        /// What is wrong with it.
+        why: String,
+    },
+    /// The workcell has no such output, input, item or tool.
+    Missing {
+        /// What was asked for.
+        what: String,
+    },
+}
+
+/// A fault without its numbers, for tables and statistics.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub enum FaultKind {
+    /// See [`Fault::JointLimit`].
+    JointLimit,
+    /// See [`Fault::OutOfReach`].
+    OutOfReach,
+    /// See [`Fault::Singular`].
+    Singular,
+    /// See [`Fault::Collision`].
+    Collision,
+    /// See [`Fault::ProtectiveStop`].
+    ProtectiveStop,
+    /// See [`Fault::Stopped`].
+    Stopped,
+    /// See [`Fault::BadCommand`].
+    BadCommand,
+    /// See [`Fault::Missing`].
+    Missing,
+}
+
+impl FaultKind {
+    /// The stable code of this kind, as machines read it.
+    #[must_use]
+    pub fn code(self) -> &'static str {
+        match self {
+            Self::JointLimit => "joint_limit",
+            Self::OutOfReach => "out_of_reach",
+            Self::Singular => "singular",
+            Self::Collision => "collision",
+            Self::ProtectiveStop => "protective_stop",
+            Self::Stopped => "stopped",
+            Self::BadCommand => "bad_command",
+            Self::Missing => "missing",
+        }
+    }
+}
+
+impl Fault {
+    /// The kind of this fault.
+    #[must_use]
+    pub fn kind(&self) -> FaultKind {
+        match self {
+            Self::JointLimit { .. } => FaultKind::JointLimit,
+            Self::OutOfReach { .. } => FaultKind::OutOfReach,
+            Self::Singular { .. } => FaultKind::Singular,
+            Self::Collision { .. } => FaultKind::Collision,
+            Self::ProtectiveStop { .. } => FaultKind::ProtectiveStop,
+            Self::Stopped => FaultKind::Stopped,
+            Self::BadCommand { .. } => FaultKind::BadCommand,
+            Self::Missing { .. } => FaultKind::Missing,
+        }
+    }
+}
+
+impl fmt::Display for Fault {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::JointLimit { joint, value_rad, range_rad: (low, high) } => write!(
+                f,
+                "joint {joint} would have to be at {value_rad:.4} rad, and its range is \
+                 {low:.4} to {high:.4} rad"
+            ),
+            Self::OutOfReach { at_m: [x, y, z] } => write!(
+                f,
+                "the arm cannot reach ({:.1}, {:.1}, {:.1}) mm",
+                x * 1e3,
+                y * 1e3,
+                z * 1e3
+            ),
+            Self::Singular { fraction } => write!(
+                f,
+                "the straight line passes a singularity at {:.0} % of the way",
+                fraction * 1e2
+            ),
+            Self::Collision { body, with, fraction, force_n } => write!(
+                f,
+                "{body} met {with} at {:.0} % of the way, with {force_n:.1} N",
+                fraction * 1e2
+            ),
+            Self::ProtectiveStop { fraction } => {
+                write!(f, "protective stop at {:.0} % of the way", fraction * 1e2)
+            }
+            Self::Stopped => write!(f, "the arm is stopped and waits to be released"),
+            Self::BadCommand { why } => write!(f, "the command makes no sense: {why}"),
+            Self::Missing { what } => write!(f, "the workcell has no {what}"),
+        }
+    }
+}
+
+impl std::error::Error for Fault {}

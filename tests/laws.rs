@@ -1,0 +1,59 @@
+//! The laws of the machine over generated modules: there and back, runs are steps, parsimony, write
+//! ahead, barrier, blocks, round trips. `LAW_RUNS` sets how many modules each law sees; a failure
+//! prints the number of the module, and `LAW_SEED` runs that one alone.
+
+use arbitrary::{Result, Unstructured};
+use obverse_testkit::machine_laws;
+use std::collections::BTreeSet;
+
+/// How many modules each law sees.
+const RUNS: u64 = 1_500;
+
+/// Random bytes that follow from a number.
+fn bytes(seed: u64) -> Vec<u8> {
+    let mut state = seed.wrapping_mul(0x9e37_79b9_7f4a_7c15) ^ 0xd1b5_4a32_d192_ed03;
+    let length = 64 + seed % 1500;
+    let mut next = || {
+        state = state.wrapping_add(0x9e37_79b9_7f4a_7c15);
+        let mut x = (state ^ state >> 30).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+        x = (x ^ x >> 27).wrapping_mul(0x94d0_49bb_1331_11eb);
+        (x ^ x >> 31) as u8
+    };
+    (0..length).map(|_| next()).collect()
+}
+
+fn holds(name: &str, law: fn(&mut Unstructured<'_>) -> Result<()>) {
+    let number = |variable: &str| std::env::var(variable).ok().and_then(|text| text.parse().ok());
+    let seeds = match number("LAW_SEED") {
+        Some(seed) => seed..seed + 1,
+        None => 0..number("LAW_RUNS").unwrap_or(RUNS),
+    };
+    for seed in seeds {
+        let held = std::panic::catch_unwind(|| law(&mut Unstructured::new(&bytes(seed))).is_ok());
+        assert!(held.unwrap_or(false), "the law `{name}` does not hold: LAW_SEED={seed}");
+    }
+}
+
+macro_rules! laws {
+    ($($name:ident)*) => {$(
+        #[test]
+        fn $name() {
+            holds(stringify!($name), machine_laws::$name);
+        }
+    )*};
+}
+
+laws! { there_and_back runs_are_steps parsimony write_ahead barrier blocks round_trips }
+
+#[test]
+fn every_opcode_occurs_in_generated_modules() {
+    let mut missing: BTreeSet<_> =
+        obverse_isa::OPS.iter().map(|row| row.opcode).collect();
+    for seed in 0..RUNS {
+        let generated = machine_laws::opcodes(&mut Unstructured::new(&bytes(seed)), &mut |opcode| {
+            missing.remove(&opcode);
+        });
+        assert!(generated.is_ok());
+    }
+    assert!(missing.is_empty(), "never generated: {missing:?}");
+}
