@@ -47,12 +47,12 @@ laws! { there_and_back runs_are_steps parsimony write_ahead barrier blocks round
 
 #[test]
 fn every_opcode_occurs_in_generated_modules() {
-    let mut missing: BTreeSet<_> =
-        obverse_isa::OPS.iter().map(|row| row.opcode).collect();
+    let mut missing: BTreeSet<_> = obverse_isa::OPS.iter().map(|row| row.opcode).collect();
     for seed in 0..RUNS {
-        let generated = machine_laws::opcodes(&mut Unstructured::new(&bytes(seed)), &mut |opcode| {
-            missing.remove(&opcode);
-        });
+        let generated =
+            machine_laws::opcodes(&mut Unstructured::new(&bytes(seed)), &mut |opcode| {
+                missing.remove(&opcode);
+            });
         assert!(generated.is_ok());
     }
     assert!(missing.is_empty(), "never generated: {missing:?}");

@@ -1,3 +1,80 @@
-//! The command line of Obverse.
+//! The command line of Obverse: the only crate that prints, exits and reads the environment.
+//!
+//! Each command stands in a file of its own under `commands`; [`load`] brings programs and workcells
+//! from files, [`story`] tells a run to people, [`report`] to machines, [`show`] shows diagnostics.
 
-fn main() {}
+mod commands;
+mod load;
+mod report;
+mod show;
+mod story;
+mod write;
+
+use clap::{Parser, Subcommand};
+use std::process::ExitCode;
+
+/// Undo for robots: compile, run and take back robot assembly programs.
+#[derive(Parser)]
+#[command(name = "obverse", version, after_help = EXIT_CODES)]
+struct Arguments {
+    #[command(subcommand)]
+    command: Command,
+}
+
+const EXIT_CODES: &str = "\
+Exit codes:
+  0  done; for `run`, the program ended with no error pending; for `back`, the run went back
+     as far as the program lets it
+  1  the run ended otherwise: an error nothing dealt with, a fault of the workcell, a trap, the limit
+  2  the input is wrong: command line, source, module, tape, workcell file; nothing was run";
+
+#[derive(Subcommand)]
+enum Command {
+    /// Check a program and say what is wrong with it.
+    Check(commands::check::Arguments),
+    /// Compile a program to a module.
+    Build(commands::build::Arguments),
+    /// Run a program on the simulated workcell and tell what happens.
+    Run(commands::run::Arguments),
+    /// Run a program, then take it back as far as it goes.
+    Back(commands::back::Arguments),
+    /// Show the instructions of a program, with the class of each.
+    Dis(commands::dis::Arguments),
+    /// Show what is on a recorded tape.
+    Tape(commands::tape::Arguments),
+    /// Show the instruction set.
+    Isa(commands::isa::Arguments),
+    /// Explain an opcode or the code of a diagnostic.
+    Explain(commands::explain::Arguments),
+}
+
+/// How a command ended, if it could be carried out at all.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Outcome {
+    /// Exit code 0.
+    Done,
+    /// Exit code 1.
+    EndedOtherwise,
+}
+
+fn main() -> ExitCode {
+    let arguments = Arguments::parse();
+    let outcome = match arguments.command {
+        Command::Check(arguments) => commands::check::run(&arguments),
+        Command::Build(arguments) => commands::build::run(&arguments),
+        Command::Run(arguments) => commands::run::run(&arguments),
+        Command::Back(arguments) => commands::back::run(&arguments),
+        Command::Dis(arguments) => commands::dis::run(&arguments),
+        Command::Tape(arguments) => commands::tape::run(&arguments),
+        Command::Isa(arguments) => commands::isa::run(&arguments),
+        Command::Explain(arguments) => commands::explain::run(&arguments),
+    };
+    match outcome {
+        Ok(Outcome::Done) => ExitCode::SUCCESS,
+        Ok(Outcome::EndedOtherwise) => ExitCode::from(1),
+        Err(problem) => {
+            show::problem(&problem);
+            ExitCode::from(2)
+        }
+    }
+}

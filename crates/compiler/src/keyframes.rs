@@ -11,6 +11,10 @@ use obverse_syntax::diagnostic::Diagnostic;
 use obverse_syntax::span::Span;
 use std::collections::{HashMap, HashSet};
 
+/// How many parameters are followed in all before it is too much: each item through each
+/// parameter it reaches.
+const MAX_FOLLOWED: usize = 10_000_000;
+
 /// A parameter of a function.
 pub(crate) type Parameter = (FunctionId, LocalId);
 
@@ -41,13 +45,19 @@ impl KeyframeFlow {
     /// Report the items that lack a keyframe they are asked for.
     pub(crate) fn check(&self, module: &Module, reports: &mut Reports) {
         let mut settled = HashSet::new();
+        let mut followed = 0;
         for &(item, parameter, at) in &self.given {
+            if followed > MAX_FOLLOWED {
+                let message = "items are passed on through too many sequences".to_owned();
+                return reports.error(Code::TooMany, at, message, "this item among them");
+            }
             if settled.insert((item, parameter)) {
-                self.check_item(item, parameter, at, module, reports);
+                followed += self.check_item(item, parameter, at, module, reports);
             }
         }
     }
 
+    /// Follow an item through the parameters that it reaches; how many there are.
     fn check_item(
         &self,
         item: ItemId,
@@ -55,8 +65,8 @@ impl KeyframeFlow {
         at: Span,
         module: &Module,
         reports: &mut Reports,
-    ) {
-        let Some(declared) = module.items.get(item.index()) else { return };
+    ) -> usize {
+        let Some(declared) = module.items.get(item.index()) else { return 0 };
         let mut seen = HashSet::from([parameter]);
         let mut reported = HashSet::new();
         let mut to_visit = vec![parameter];
@@ -82,5 +92,6 @@ impl KeyframeFlow {
                 }
             }
         }
+        seen.len()
     }
 }

@@ -66,6 +66,9 @@ impl Reports {
         word: &str,
         words: impl Iterator<Item = &'w str>,
     ) -> Option<&'w str> {
+        if self.diagnostics.len() >= MAX_DIAGNOSTICS {
+            return None;
+        }
         let budget = MAX_COMPARED.saturating_sub(self.compared);
         let compared = &mut self.compared;
         obverse_syntax::nearest(word, words.take(budget).inspect(|_| *compared += 1))

@@ -56,10 +56,15 @@ pub(crate) struct Moving {
 
 impl Moving {
     /// The body, and the pose of the frame that it is given in.
-    pub(crate) fn at(&self, place: &mut Place<'_>) -> (Body, Pose) {
+    pub(crate) fn at<'p>(&'p self, place: &'p mut Place<'_>) -> (&'p Body, &'p Pose) {
         match &self.carrier {
-            Carrier::Link(index) => (robot::link(*index, place.frames()), Pose::identity()),
-            Carrier::Mount(body) => (*body, place.mount),
+            Carrier::Link(index) => {
+                if place.links.is_empty() {
+                    place.find_links();
+                }
+                (&place.links[*index], &place.base)
+            }
+            Carrier::Mount(body) => (body, &place.mount),
         }
     }
 
@@ -72,29 +77,38 @@ impl Moving {
 pub(crate) struct Place<'a> {
     route: &'a Route,
     pub(crate) fraction: f64,
+    base: Pose,
     pub(crate) mount: Pose,
-    /// On a line the links are found only if someone asks.
-    frames: Option<LinkFrames>,
+    /// The bodies of the links; empty until someone asks.
+    links: Vec<Body>,
 }
 
 impl<'a> Place<'a> {
     pub(crate) fn at(route: &'a Route, fraction: f64) -> Self {
+        let mut place = Self {
+            route,
+            fraction,
+            base: Pose::identity(),
+            mount: Pose::identity(),
+            links: Vec::new(),
+        };
         match &route.line {
-            Some(line) => Self { route, fraction, mount: line.mount_at(fraction), frames: None },
-            None => {
-                let frames = links(&route.joints_at(fraction));
-                Self { route, fraction, mount: frames.mount, frames: Some(frames) }
-            }
+            Some(line) => place.mount = line.mount_at(fraction),
+            None => place.mount = place.find_links(),
         }
+        place
     }
 
-    fn frames(&mut self) -> &LinkFrames {
-        self.frames.get_or_insert_with(|| links(&self.route.joints_at(self.fraction)))
+    /// Find the links; the mount that comes with them.
+    fn find_links(&mut self) -> Pose {
+        let frames = links(&self.route.joints_at(self.fraction));
+        self.links.extend((0..JOINT_COUNT).map(|index| robot::link(index, &frames)));
+        frames.mount
     }
 
     /// Whether the links are known here, so that looking at another costs little.
     pub(crate) fn knows_links(&self) -> bool {
-        self.frames.is_some()
+        !self.links.is_empty()
     }
 }
 

@@ -163,7 +163,7 @@ impl<'a> Sweep<'a> {
     /// A distance that is not above the true one.
     fn apart_mm(&self, moving: usize, standing: usize, place: &mut Place<'_>) -> f64 {
         let (body, carrier) = self.moving[moving].at(place);
-        self.standing(standing).obstacle.at_least_mm(&body, &carrier)
+        self.standing(standing).obstacle.at_least_mm(body, carrier)
     }
 
     fn standing(&self, index: usize) -> &Standing {
@@ -259,14 +259,15 @@ impl<'a> Sweep<'a> {
     fn look_at(&self, pair: &mut Pair, place: &mut Place<'_>) {
         let moving = &self.moving[pair.moving];
         let standing = self.standing(pair.standing);
+        let (fraction, mount) = (place.fraction, place.mount);
         let (body, carrier) = moving.at(place);
-        let mut apart_mm = standing.obstacle.at_least_mm(&body, &carrier);
+        let mut apart_mm = standing.obstacle.at_least_mm(body, carrier);
         let mut stride_mm = STEP_MM;
         pair.force_n = Vector3::zeros();
         if apart_mm < NEAR_MM {
             let contact = &self.world.cell.contact;
             let peg = self.peg.as_ref().filter(|_| moving.is_peg);
-            match peg.and_then(|peg| peg.at(&standing.holes, &place.mount, contact)) {
+            match peg.and_then(|peg| peg.at(&standing.holes, &mount, contact)) {
                 Some(AtHole::Over(over_mm)) => apart_mm = over_mm.max(apart_mm),
                 Some(AtHole::In { force_n, steady_mm }) => {
                     apart_mm = 0.0;
@@ -274,7 +275,7 @@ impl<'a> Sweep<'a> {
                     stride_mm = steady_mm.clamp(STEP_MM, BORE_STRIDE_MM);
                 }
                 None => {
-                    let gap = standing.obstacle.gap(&body, &carrier);
+                    let gap = standing.obstacle.gap(body, carrier);
                     let pressed_m = -gap.distance_mm.min(0.0) / MM;
                     pair.force_n = gap.normal * (contact.stiffness_n_per_m * pressed_m);
                     apart_mm = gap.distance_mm;
@@ -283,7 +284,7 @@ impl<'a> Sweep<'a> {
         }
         pair.touching = apart_mm <= SKIN_MM;
         pair.stride = stride_mm / moving.way_mm;
-        pair.due = place.fraction + (apart_mm - 0.5 * SKIN_MM) / moving.way_mm;
+        pair.due = fraction + (apart_mm - 0.5 * SKIN_MM) / moving.way_mm;
     }
 
     /// Whether a pair is pressed too hard, and harder than it was before on this route.

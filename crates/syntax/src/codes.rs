@@ -381,7 +381,7 @@ codes! {
         wrong ""
         right ""
     ExpressionTooLarge "E0311" "an expression that is too large"
-        why "A statement computes at most 200 values and holds at most 60 of them at a time; the \
+        why "A statement computes at most 200 values and holds at most 120 of them at a time; the \
              arguments of a call count together. Name a part of it with `var`."
         wrong ""
         right ""

@@ -150,6 +150,24 @@ impl Tape {
         self.bits.held_bytes() + self.words.held_bytes() + self.joints.held_bytes()
     }
 
+    /// The newest bit.
+    #[must_use]
+    pub fn newest_bit(&self) -> Option<bool> {
+        self.bits.last()
+    }
+
+    /// The newest word.
+    #[must_use]
+    pub fn newest_word(&self) -> Option<u64> {
+        self.words.last()
+    }
+
+    /// The newest joint configuration, in radians.
+    #[must_use]
+    pub fn newest_joints(&self) -> Option<[f64; 6]> {
+        self.joints.last()
+    }
+
     /// Every record as plain data, oldest first.
     #[must_use]
     pub fn streams(&self) -> Streams {

@@ -7,7 +7,7 @@ use obverse_testkit::laws;
 const PROGRAMS: u64 = 400;
 
 /// How many bytes a program is made of at the most.
-const BYTES: u64 = 4096;
+const BYTES: u64 = 8192;
 
 /// Bytes that follow from a number (splitmix64).
 fn bytes(seed: u64) -> Vec<u8> {

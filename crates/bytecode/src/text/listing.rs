@@ -2,7 +2,7 @@
 //! nothing of the tables of a module.
 
 use super::names::{Found, Names, Scope, is_named};
-use super::quote::{excerpt, is_bare, quoted_if_short};
+use super::quote::{excerpt, is_bare, is_short, quoted};
 use super::words::{self, Word};
 use crate::builder::with_prefix;
 use crate::module::{Function, Module, SourceEntry};
@@ -15,13 +15,16 @@ const COMMENT_COLUMN: usize = 44;
 
 /// An operand that names an entry of a table: its name where it is one, and otherwise its index.
 pub(super) fn name(scope: &Scope, kind: OperandKind, at: usize) -> String {
-    let Some(name) = scope.name(kind, at) else { return format!("#{at}") };
+    let index = format!("#{at}");
+    let Some(name) = scope.name(kind, at).filter(|name| is_short(name)) else { return index };
     let is_unique = scope.find(kind, name) == Some(Found::One(at));
     // A reason is prose, also where it is one word.
-    match is_bare(name) && kind != OperandKind::Reason {
-        true if is_unique => name.to_owned(),
-        true => format!("{name}#{at}"),
-        false => quoted_if_short(name).filter(|_| is_unique).unwrap_or_else(|| format!("#{at}")),
+    let is_word = is_bare(name) && kind != OperandKind::Reason;
+    match (is_word, is_unique) {
+        (true, true) => name.to_owned(),
+        (true, false) => name.to_owned() + &index,
+        (false, true) => quoted(name),
+        (false, false) => index,
     }
 }
 
@@ -191,9 +194,9 @@ impl<'m> SourceComments<'m> {
         let lines = &self.lines[usize::from(entry.file)];
         let start = entry.start as usize;
         let number = lines.partition_point(|&begin| begin <= start);
-        let rest = text.get(*lines.get(number.checked_sub(1)?)?..)?;
-        (start <= text.len())
-            .then(|| format!("{number} | {}", excerpt(rest.split('\n').next().unwrap_or_default())))
+        let begin = *lines.get(number.checked_sub(1)?)?;
+        let end = lines.get(number).copied().unwrap_or(text.len());
+        (start <= text.len()).then(|| format!("{number} | {}", excerpt(&text[begin..end])))
     }
 }
 

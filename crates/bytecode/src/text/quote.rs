@@ -2,13 +2,19 @@
 
 use std::fmt::Write;
 
-/// Longer names are not written where they are used, so that a text stays linear in its module.
+/// The most of a name that is repeated where it is used, in bytes.
 const MAX_SHOWN: usize = 80;
+
+/// Whether a name can be repeated where it is used. If long ones were, a text would not be linear in
+/// its module.
+pub(super) fn is_short(name: &str) -> bool {
+    name.len() <= MAX_SHOWN
+}
 
 /// Whether a name can stand without quotes.
 pub(super) fn is_bare(name: &str) -> bool {
     let is_inner = |byte: u8| byte.is_ascii_alphanumeric() || matches!(byte, b'_' | b'$' | b'.');
-    name.len() <= MAX_SHOWN
+    is_short(name)
         && name.bytes().next().is_some_and(|first| is_inner(first) && first != b'.')
         && !name.as_bytes()[0].is_ascii_digit()
         && name.bytes().all(is_inner)
@@ -34,15 +40,11 @@ pub(super) fn quoted(text: &str) -> String {
     out
 }
 
-/// A string with quotes, unless it is too long to be repeated.
-pub(super) fn quoted_if_short(text: &str) -> Option<String> {
-    (text.len() <= MAX_SHOWN).then(|| quoted(text))
-}
-
-/// The beginning of a string, on one line, without quotes: for comments and messages.
+/// The beginning of a string, on one line, without quotes: for comments and messages. Takes no longer
+/// for a longer string.
 pub(super) fn excerpt(text: &str) -> String {
-    let mut chars = text.trim().chars();
-    let mut out: String = chars
+    let mut chars = text.chars().take(4 * MAX_SHOWN).skip_while(|c| c.is_whitespace());
+    let out: String = chars
         .by_ref()
         .take(MAX_SHOWN)
         .map(|c| match c {
@@ -51,10 +53,8 @@ pub(super) fn excerpt(text: &str) -> String {
             _ => char::REPLACEMENT_CHARACTER,
         })
         .collect();
-    if chars.next().is_some() {
-        out.push('…');
-    }
-    out
+    let is_cut = chars.any(|c| !c.is_whitespace());
+    format!("{}{}", out.trim_end(), if is_cut { "…" } else { "" })
 }
 
 /// Whether a character shows as itself and leaves the rest of its line alone.
@@ -160,6 +160,8 @@ mod tests {
     fn excerpts_are_one_short_line() {
         assert_eq!(excerpt("  move to start\n"), "move to start");
         assert_eq!(excerpt("a\tb\u{1b}"), "a b\u{fffd}");
-        assert_eq!(excerpt(&"x".repeat(100)).chars().count(), 81);
+        assert_eq!(excerpt(&"x".repeat(100)), format!("{}…", "x".repeat(80)));
+        assert_eq!(excerpt(&format!("{} \n", "x".repeat(80))), "x".repeat(80));
+        assert_eq!(excerpt(&" ".repeat(1000)), "");
     }
 }

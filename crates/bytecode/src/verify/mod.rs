@@ -36,8 +36,8 @@ use std::fmt;
 pub const MAX_OPERANDS: usize = 128;
 /// The most errors that are reported of one module.
 pub const MAX_ERRORS: usize = 32;
-/// The longest reason of an error, in bytes; a longer one is cut short.
-const MAX_WHY_BYTES: usize = 512;
+/// The longest reason of an error, in characters; a longer one is cut short.
+const MAX_WHY_CHARS: usize = 512;
 
 /// A module that has been verified.
 #[derive(Clone, Debug)]
@@ -109,10 +109,10 @@ impl Findings {
         self.add(None, rule, why.into());
     }
 
-    fn add(&mut self, pc: Option<u32>, rule: Rule, mut why: String) {
+    fn add(&mut self, pc: Option<u32>, rule: Rule, why: String) {
         if self.0.len() < MAX_ERRORS {
             // A name in it may be as long as the module.
-            why.truncate(why.floor_char_boundary(MAX_WHY_BYTES));
+            let why = why.chars().take(MAX_WHY_CHARS).collect();
             self.0.push(VerifyError { pc, rule, why });
         }
     }

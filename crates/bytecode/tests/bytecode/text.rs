@@ -322,7 +322,7 @@ fn a_long_name_is_not_repeated() {
     let mut module = assembled(PICK);
     module.joints[0].0 = "j".repeat(100_000);
     module.reasons[0] = "r".repeat(100_000);
-    module.code = vec![module.code[1], module.code[8]].repeat(1000);
+    module.code = [module.code[1], module.code[8]].repeat(1000);
     module.functions.clear();
     module.source_map.clear();
     assert!(disassemble(&module).len() < 500_000);
@@ -347,9 +347,10 @@ fn damaged_text_is_refused_or_says_a_module() {
     arbtest::arbtest(|u| {
         let mut damaged = text.clone();
         for _ in 0..u.int_in_range(1..=4)? {
-            let at = u.choose_index(damaged.len())?;
-            let at = damaged.floor_char_boundary(at);
-            let end = damaged.ceil_char_boundary((at + u.int_in_range(0..=8)?).min(damaged.len()));
+            let boundaries: Vec<usize> = damaged.char_indices().map(|(at, _)| at).collect();
+            let at = u.choose_index(boundaries.len())?;
+            let end = (at + u.int_in_range(0..=8)?).min(boundaries.len() - 1);
+            let (at, end) = (boundaries[at], boundaries[end]);
             damaged.replace_range(at..end, u.choose(&pieces)?);
         }
         if let Ok(module) = assemble(&damaged) {

@@ -40,7 +40,7 @@ impl<'s> Checker<'s> {
                 Some(self.counted(Some(*name), first, last, body, header))
             }
             Written::Loop(body) => {
-                let header = Span::new(start, body.span.start);
+                let header = self.header(start, body.span);
                 let (block, breaks) = self.body(body, header);
                 Some((self.done(StatementKind::Loop(block), header), breaks))
             }

@@ -10,7 +10,7 @@ use crate::units::{Dimension, Unit};
 use obverse_bytecode::Keyframe;
 use obverse_isa::{ItemId, KeyframeId, Type};
 use obverse_syntax::ast::{
-    self, IoOperation, ItemDeclaration, JointsDeclaration, Name, VariableDeclaration, Vector,
+    IoOperation, ItemDeclaration, JointsDeclaration, Name, VariableDeclaration, Vector,
 };
 use obverse_syntax::codes::Code;
 use obverse_syntax::diagnostic::Diagnostic;
@@ -78,9 +78,14 @@ impl<'s> Checker<'s> {
         what: &str,
     ) -> [f64; COUNT] {
         let unit = vector.unit.map(|unit| self.vector_unit(unit, dimension, what));
-        let values: Vec<f64> = vector
-            .elements
-            .iter()
+        let elements: Vec<Expression> =
+            vector.elements.iter().map(|element| self.constant(element)).collect();
+        if unit.is_none() && elements.iter().any(is_plain_number) {
+            self.report_no_unit(vector.span, dimension, what);
+            return [0.0; COUNT];
+        }
+        let values: Vec<f64> = elements
+            .into_iter()
             .map(|element| match unit {
                 Some(unit) => self.element_of_unit(element, unit, vector.unit),
                 None => self.element_alone(element, dimension, what),
@@ -93,6 +98,13 @@ impl<'s> Checker<'s> {
             self.reports.error(Code::VectorLength, vector.span, message, &at);
             [0.0; COUNT]
         })
+    }
+
+    fn report_no_unit(&mut self, vector: Span, dimension: Dimension, what: &str) {
+        let message = format!("each number of {what} is {dimension}, and here is no unit");
+        let diagnostic = Diagnostic::error(Code::MissingUnit, vector, message, "without a unit")
+            .with_help(format!("write the unit after the bracket: {}", dimension.examples()));
+        self.reports.add(diagnostic);
     }
 
     /// The unit after a bracket, if it can be meant.
@@ -125,19 +137,18 @@ impl<'s> Checker<'s> {
     /// A number whose unit stands after the bracket.
     fn element_of_unit(
         &mut self,
-        element: &ast::Expression<'s>,
+        value: Expression,
         unit: Option<Unit>,
         written: Option<Name<'s>>,
     ) -> f64 {
-        let value = self.constant(element);
+        let span = value.span;
         if let (ValueType::Real(dimension), Some(written)) = (value.of_type, written)
             && !dimension.is_none()
         {
             let message = "this number has a unit of its own, and the bracket has one as well";
-            let diagnostic =
-                Diagnostic::error(Code::DoubleUnit, element.span, message, "its own unit")
-                    .with_label(written.span, "the unit of each number")
-                    .with_help("leave out one of the two");
+            let diagnostic = Diagnostic::error(Code::DoubleUnit, span, message, "its own unit")
+                .with_label(written.span, "the unit of each number")
+                .with_help("leave out one of the two");
             self.reports.add(diagnostic);
             return 0.0;
         }
@@ -145,19 +156,13 @@ impl<'s> Checker<'s> {
         let (ExpressionKind::Real(value), Some(unit)) = (value.kind, unit) else { return 0.0 };
         let si = unit.to_si(value);
         if !si.is_finite() {
-            self.not_finite(element.span);
+            self.not_finite(span);
         }
         si
     }
 
     /// A number with a unit of its own.
-    fn element_alone(
-        &mut self,
-        element: &ast::Expression<'s>,
-        dimension: Dimension,
-        what: &str,
-    ) -> f64 {
-        let value = self.constant(element);
+    fn element_alone(&mut self, value: Expression, dimension: Dimension, what: &str) -> f64 {
         let value = self.fit(value, &Need::new(ValueType::Real(dimension), what));
         match value.kind {
             ExpressionKind::Real(value) => value,
@@ -225,4 +230,8 @@ impl<'s> Checker<'s> {
         self.declare(name, meaning);
         meaning
     }
+}
+
+fn is_plain_number(value: &Expression) -> bool {
+    matches!(value.of_type, ValueType::Int | ValueType::NUMBER)
 }

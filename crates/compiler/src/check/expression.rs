@@ -15,7 +15,7 @@ use obverse_syntax::span::{Span, Spanned};
 /// How many values a statement computes at the most.
 pub(super) const MAX_COMPUTED: usize = 200;
 /// How many values a statement holds at a time at the most.
-pub(super) const MAX_HELD: usize = 60;
+pub(super) const MAX_HELD: usize = 120;
 
 /// What a value is needed for.
 #[derive(Clone, Debug)]

@@ -5,6 +5,7 @@ use super::frame::FrameScope;
 use super::names::Meaning;
 use crate::report::warning;
 use crate::tree::{Block, Body, Function, Statement};
+use crate::types::ValueType;
 use obverse_bytecode::FunctionKind;
 use obverse_isa::{FunctionId, LocalId};
 use obverse_syntax::ast::{self, IoOperation, Name, Sequence};
@@ -30,6 +31,7 @@ impl<'s> Checker<'s> {
         let signature = &self.signatures[id.index()];
         let types: Vec<_> = signature.parameters.iter().map(|(_, of_type, _)| *of_type).collect();
         for (parameter, of_type) in sequence.parameters.iter().zip(types) {
+            self.check_passable(parameter.type_name, of_type);
             self.declare_local(parameter.name, of_type);
             // What a caller must give need not be taken.
             self.names.mark_used(parameter.name.value);
@@ -42,6 +44,17 @@ impl<'s> Checker<'s> {
                 self.reports.error(Code::TooMany, sequence.name.span, message, at);
             }
         }
+    }
+
+    /// A parameter of a type that has no values could never be given one.
+    fn check_passable(&mut self, type_name: Name<'s>, of_type: ValueType) {
+        let missing = match of_type {
+            ValueType::Item if self.module.items.is_empty() => "item",
+            ValueType::Joints if self.module.joints.is_empty() => "joint configuration",
+            _ => return,
+        };
+        let message = format!("the file declares no {missing} that could be passed here");
+        self.reports.error(Code::UnknownType, type_name.span, message, "a type without values");
     }
 
     /// `io gripper_open { set 0 low; sleep 0.5 s }`
@@ -113,7 +126,7 @@ impl<'s> Checker<'s> {
         for written in &block.statements {
             if !checked.falls_through {
                 self.frame.is_dead = true;
-                unreached = Some(unreached.map_or(written.span, |span| span.to(written.span)));
+                unreached = unreached.or(Some(written.span));
             }
             self.frame.begin_statement();
             let before = if unreached.is_none() { checked.statements.last_mut() } else { None };
@@ -127,16 +140,27 @@ impl<'s> Checker<'s> {
         }
         self.frame.is_dead = was_dead;
         self.names.close(&scope);
-        if let Some(span) = unreached
-            && !was_dead
-        {
-            let message = "what follows is never reached";
-            self.reports.add(
-                warning(Code::Unreachable, span, message, "never reached")
-                    .with_help("leave it out"),
-            );
+        if let (Some(unreached), false) = (unreached, was_dead) {
+            self.warn_unreached(unreached, &checked);
         }
         checked
+    }
+
+    fn warn_unreached(&mut self, unreached: Span, block: &Block) {
+        let message = "this and what follows it in the block is never reached";
+        let mut diagnostic = warning(Code::Unreachable, unreached, message, "never reached")
+            .with_help("leave it out");
+        if let Some(last) = block.statements.last() {
+            diagnostic = diagnostic.with_label(last.span, "this never goes on");
+        }
+        self.reports.add(diagnostic);
+    }
+
+    /// What stands before a block.
+    pub(super) fn header(&self, start: u32, block: Span) -> Span {
+        let text = self.source.get(start as usize..block.start as usize).unwrap_or_default();
+        let length = u32::try_from(text.trim_end().len()).unwrap_or(0);
+        Span::new(start, start + length)
     }
 
     /// The parameter of the function in hand that a local is.

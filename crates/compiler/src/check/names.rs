@@ -55,6 +55,9 @@ impl Meaning {
         match self {
             Self::Io(_) => Some(format!("`io {name}`")),
             Self::Joints(_) | Self::Position(_) => Some(format!("`move to {name}`")),
+            Self::Item(_) | Self::Local(_, ValueType::Item) => {
+                Some(format!("`move to {name}.KEYFRAME`, or as an argument"))
+            }
             Self::Error(_) => Some(format!("`throw {name}`")),
             Self::Guarded(_) => Some(format!("`advance {name}`")),
             Self::Sequence(_) | Self::Action(_) => Some(format!("`call {name}`")),

@@ -333,7 +333,7 @@ impl<'s> Checker<'s> {
         if values.len() != count {
             let message = format!("`{}` takes {count} arguments", name.value);
             let message = if count == 1 { message.trim_end_matches('s') } else { &message };
-            let at = format!("{} are given", values.len());
+            let at = format!("given {}", values.len());
             self.reports.error(Code::ArgumentCount, span, message.to_owned(), &at);
             return Expression::missing(span);
         }

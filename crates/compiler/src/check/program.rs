@@ -78,9 +78,9 @@ impl<'s> Checker<'s> {
                     cell = Some(file.span);
                     self.module.cell = Some(file.value.to_owned());
                 }
-                Item::Io(io) => self.declare_function(io.name, Meaning::Io),
+                Item::Io(io) => _ = self.declare_function(io.name, Meaning::Io),
                 Item::AdvancedMove(guarded) => {
-                    self.declare_function(guarded.name, Meaning::Guarded);
+                    _ = self.declare_function(guarded.name, Meaning::Guarded);
                 }
                 Item::Sequence(sequence) => self.declare_sequence(sequence),
                 Item::Joints(joints) => {
@@ -118,23 +118,26 @@ impl<'s> Checker<'s> {
 
     fn declare_sequence(&mut self, sequence: &Sequence<'s>) {
         let kind = if sequence.is_action { Meaning::Action } else { Meaning::Sequence };
-        self.declare_function(sequence.name, kind);
+        let id = self.declare_function(sequence.name, kind);
         let parameters = sequence.parameters.iter().map(|parameter| {
             let of_type = self.type_named(parameter.type_name);
             (parameter.name.value.to_owned(), of_type, parameter.name.span)
         });
         let parameters: Vec<_> = parameters.collect();
-        if let Some(signature) = self.signatures.last_mut() {
-            signature.parameters = parameters;
-        }
+        self.signatures[id.index()].parameters = parameters;
     }
 
-    fn declare_function(&mut self, name: Name<'s>, meaning: fn(FunctionId) -> Meaning) {
+    fn declare_function(
+        &mut self,
+        name: Name<'s>,
+        meaning: fn(FunctionId) -> Meaning,
+    ) -> FunctionId {
         let id = self.new_function(name.span);
         self.declare(name, meaning(id));
+        id
     }
 
-    /// A further function, named here.
+    /// A further function, named here; if there are too many, the start in its place.
     pub(super) fn new_function(&mut self, named: Span) -> FunctionId {
         let entries = self.signatures.len();
         let id = self.index(entries, "sequences, moves and blocks in reverse", named);
@@ -185,7 +188,8 @@ impl<'s> Checker<'s> {
     }
 
     fn check_bodies(&mut self, program: &Program<'s>) {
-        let mut ids = (1..=u16::MAX).map(FunctionId);
+        let declared = u16::try_from(self.signatures.len()).unwrap_or(u16::MAX);
+        let mut ids = (1..declared).map(FunctionId);
         for item in &program.items {
             let is_function =
                 matches!(item, Item::Io(_) | Item::AdvancedMove(_) | Item::Sequence(_));
@@ -273,8 +277,8 @@ impl<'s> Checker<'s> {
     }
 
     fn warn_of_unused(&mut self, main: Option<FunctionId>) {
-        if main.is_none() {
-            // Then nothing is used.
+        if self.reports.has_errors() {
+            // What would use a thing may be what has the mistake.
             return;
         }
         for symbol in self.names.all() {

@@ -376,7 +376,7 @@ impl<'s> Checker<'s> {
             }
             return Some((self.done(StatementKind::Set(value), span), true));
         };
-        let header = Span::new(span.start, block.span.start);
+        let header = self.header(span.start, block.span);
         let former = self.hidden(of_type, span);
         let block = self.block(block);
         self.frame.give_back(former);
@@ -429,12 +429,12 @@ impl<'s> Checker<'s> {
             }
             _ => (StatementKind::Return, written.span, false),
         };
-        let header = Span::new(written.span.start, inner.start);
+        let header = self.header(written.span.start, inner);
         (self.done(kind, header), falls_through)
     }
 
     fn reversed_block(&mut self, block: &ast::Block<'s>, span: Span) -> Block {
-        let header = Span::new(span.start, block.span.start);
+        let header = self.header(span.start, block.span);
         self.frame.around.push(Around::Reversed(header));
         let checked = self.block(block);
         self.frame.around.pop();

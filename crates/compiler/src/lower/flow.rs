@@ -1,7 +1,7 @@
 //! Branches and loops as jumps and joins.
 
 use super::Lower;
-use super::frame::{Loop, Scope};
+use super::frame::Loop;
 use super::statement::PREFIX;
 use super::test::is_alone;
 use crate::tree::{Block, Expression, ExpressionKind, Prepared, Statement, StatementKind};
@@ -177,16 +177,6 @@ impl Lower<'_> {
         // Nothing leaves this loop, and yet something must reach what is behind it.
         self.push_bool(true);
         self.code.jump_back(top, |target| Instr::JumpIf { prefix: PREFIX, target });
-    }
-
-    /// Whether some jump so far leads to the end of the innermost block with a reverse of its own,
-    /// or of the function.
-    fn has_way_out(&self) -> bool {
-        let ways = self.frame.scopes.iter().rev().find_map(|scope| match scope {
-            Scope::Reversed(ways) => Some(&ways.marks),
-            _ => None,
-        });
-        !ways.unwrap_or(&self.frame.exits).is_empty()
     }
 
     fn open_loop(&mut self) {

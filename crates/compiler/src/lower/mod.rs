@@ -100,7 +100,8 @@ impl HiddenGlobals {
 impl<'p> Lower<'p> {
     fn new(program: &'p Program, effects: &'p Effects, reports: &'p mut Reports) -> Self {
         let globals = HiddenGlobals::of(program, effects);
-        Self {
+        let global_count = program.module.globals.len() + globals.variables.len();
+        let mut lower = Self {
             program,
             effects,
             reports,
@@ -110,7 +111,11 @@ impl<'p> Lower<'p> {
             functions: Vec::new(),
             globals,
             frame: Frame::default(),
+        };
+        if global_count > usize::from(u16::MAX) {
+            lower.too_many("a module has at most 65535 variables, with three for its errors");
         }
+        lower
     }
 
     /// What follows is of this place in the source.

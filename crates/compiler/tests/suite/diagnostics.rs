@@ -1,1 +1,585 @@
+//! What each mistake is called and where it is. Some programs have many: all are found in one go,
+//! and none is a consequence of another.
 
+use crate::common::findings;
+
+/// That a program has these diagnostics, in the order of their places.
+fn check(source: &str, expected: &[&str]) {
+    assert_eq!(findings(source.trim_start()), expected);
+}
+
+#[test]
+fn vectors_are_checked_by_number_and_unit() {
+    check(
+        r#"
+joints few = [0, -90 deg, 90] deg
+joints plain = [0, 1, 2, 3, 4, 5]
+joints long = [0, 1, 2, 3, 4, 5] mm
+item peg { keyframe grasp = [0, 0] mm [1 deg, 2 s, 3 deg] keyframe grasp = [0, 0, 0] mm }
+sequence main { wait 1 s }
+"#,
+        &[
+            r#"E0205 1:14 "[0, -90 deg, 90] deg""#,
+            r#"E0204 1:18 "-90 deg""#,
+            r#"E0203 2:16 "[0, 1, 2, 3, 4, 5]""#,
+            r#"E0202 3:34 "mm""#,
+            r#"E0205 4:29 "[0, 0] mm""#,
+            r#"E0202 4:47 "2 s""#,
+            r#"E0102 4:68 "grasp""#,
+        ],
+    );
+}
+
+#[test]
+fn a_name_is_of_its_kind() {
+    check(
+        r#"
+joints start = [0, -90, 90, -90, -90, 0] deg
+item peg { }
+io open { set 0 low } reverse start
+error jam { recover using start }
+sequence main {
+  move to open
+  move to peg
+  move to peg.grasp
+  move to start.grasp
+  io start
+  call start
+  advance main
+  throw open
+  var n = main + 1
+}
+"#,
+        &[
+            r#"E0103 3:31 "start""#,
+            r#"E0103 4:27 "start""#,
+            r#"E0103 6:11 "open""#,
+            r#"E0103 7:11 "peg""#,
+            r#"E0104 8:15 "grasp""#,
+            r#"E0103 9:11 "start""#,
+            r#"E0103 10:6 "start""#,
+            r#"E0103 11:8 "start""#,
+            r#"E0103 12:11 "main""#,
+            r#"E0103 13:9 "open""#,
+            r#"E0103 14:11 "main""#,
+        ],
+    );
+}
+
+#[test]
+fn an_unknown_name_is_reported_once_and_followed_by_nothing() {
+    check(
+        r#"
+joints start = [0, -90, 90, -90, -90, 0] deg
+var x = y
+sequence main {
+  move to strat
+  call nothing(x + 1, start)
+  var a = x + 3 mm
+  a = a + 2 s
+  x = true
+  z = a
+  throw jam
+}
+"#,
+        &[
+            r#"E0101 2:9 "y""#,
+            r#"E0101 4:11 "strat""#,
+            r#"E0101 5:8 "nothing""#,
+            r#"E0101 9:3 "z""#,
+            r#"E0101 10:9 "jam""#,
+        ],
+    );
+}
+
+#[test]
+fn a_name_is_given_once_where_it_is_seen() {
+    check(
+        r#"
+var n = 1
+sequence n { wait 1 s }
+action go(a: int, a: int) { var b = a }
+sequence main {
+  var c = 1
+  if c > 0 { var c = 2 }
+  for c from 1 to 2 { wait 1 s }
+  if c > 1 { var d = 1 } else { var d = 2 }
+}
+"#,
+        &[
+            r#"E0102 2:10 "n""#,
+            r#"E0102 3:19 "a""#,
+            r#"E0102 6:18 "c""#,
+            r#"E0102 7:7 "c""#,
+        ],
+    );
+}
+
+#[test]
+fn values_are_of_their_type() {
+    check(
+        r#"
+action go(n: int, r: number, l: length, b: bool) { wait 1 s }
+sequence main {
+  call go(1, 2, 3 mm, true)
+  call go(1.5, 2, 3 mm, 4)
+  call go(1, 2 s, 3, false)
+  call go(1)
+  var n = 3
+  var r = n * 2.5
+  var ok = 1 and true
+  if n { wait 1 s }
+  while 3 mm { wait 1 s }
+  repeat 1.5 times { wait 1 s }
+  for i from 1 mm to 2 { wait 1 s }
+  ok += true
+  n = -true + 1
+  n = not 3
+}
+"#,
+        &[
+            r#"E0201 4:11 "1.5""#,
+            r#"E0201 4:25 "4""#,
+            r#"E0202 5:14 "2 s""#,
+            r#"E0203 5:19 "3""#,
+            r#"E0208 6:3 "call go(1)""#,
+            r#"E0201 8:11 "n""#,
+            r#"E0201 9:12 "1""#,
+            r#"E0201 10:6 "n""#,
+            r#"E0201 11:9 "3 mm""#,
+            r#"E0201 12:10 "1.5""#,
+            r#"E0201 13:14 "1 mm""#,
+            r#"E0201 15:8 "true""#,
+            r#"E0201 16:11 "3""#,
+        ],
+    );
+}
+
+#[test]
+fn units_are_told_apart() {
+    check(
+        r#"
+sequence main {
+  wait 3 mm
+  wait 3
+  move 2 s up
+  var a = 3 mm + 2 s
+  var b = 3 mm < 4
+  var c = 1 N > 2 mm
+  var d: time = 3 mm / 2
+  var e: speed = 3 mm / 2 s
+  e = 3 deg / 2 s
+  d += 1 mm
+  var f = random(1, 2 mm)
+  var g = min(1 s, 2 N)
+  var h = sqrt(2 mm)
+}
+"#,
+        &[
+            r#"E0202 2:8 "3 mm""#,
+            r#"E0203 3:8 "3""#,
+            r#"E0202 4:8 "2 s""#,
+            r#"E0202 5:18 "2 s""#,
+            r#"E0203 6:18 "4""#,
+            r#"E0202 7:17 "2 mm""#,
+            r#"E0202 8:17 "3 mm / 2""#,
+            r#"E0202 10:7 "3 deg / 2 s""#,
+            r#"E0202 11:8 "1 mm""#,
+            r#"E0203 12:18 "1""#,
+            r#"E0202 13:20 "2 N""#,
+            r#"E0209 14:16 "2 mm""#,
+        ],
+    );
+}
+
+#[test]
+fn functions_take_what_they_take() {
+    check(
+        r#"
+sequence main {
+  var a = squrt(4)
+  var b = min(1)
+  var c = int(3 mm)
+  var d = real(2.5)
+  var e = abs(true)
+  var f = random(true, 2)
+  var n = 1
+  var g = random(n, n)
+}
+"#,
+        &[
+            r#"E0105 2:11 "squrt""#,
+            r#"E0208 3:11 "min(1)""#,
+            r#"E0202 4:15 "3 mm""#,
+            r#"E0201 5:16 "2.5""#,
+            r#"E0201 6:15 "true""#,
+            r#"E0201 7:18 "true""#,
+            r#"E0201 9:18 "n""#,
+        ],
+    );
+}
+
+#[test]
+fn what_is_fixed_before_the_program_runs_is_constant() {
+    check(
+        r#"
+joints start = [0, -90, 90, -90, -90, 0] deg
+var n = 1
+var a = n + 1
+var b = force
+var c = random(1, 2)
+var d = holding
+error jam { recover by reversing 2 actions, perturbed distance }
+sequence main { wait 1 s }
+"#,
+        &[
+            r#"E0206 3:9 "n""#,
+            r#"E0206 4:9 "force""#,
+            r#"E0206 5:9 "random(1, 2)""#,
+            r#"E0206 6:9 "holding""#,
+            r#"E0206 7:55 "distance""#,
+        ],
+    );
+}
+
+#[test]
+fn values_that_cannot_be_meant() {
+    check(
+        r#"
+io open { set 70000 low sleep -1 s }
+error jam { recover by reversing 0 actions, perturbed -1 mm }
+advanced move go { distance 0 mm x stop if force > -1 N on failure { repeat with perturbation 0 times } }
+var big = 1e200 * 1e200
+sequence main { wait -1 s var n = 1 / 0 n = n mod 0 }
+"#,
+        &[
+            r#"E0210 1:15 "70000""#,
+            r#"E0210 1:31 "-1 s""#,
+            r#"E0210 2:34 "0""#,
+            r#"E0210 2:45 "perturbed -1 mm""#,
+            r#"E0210 3:29 "0 mm""#,
+            r#"E0210 3:36 "stop if force > -1 N""#,
+            r#"E0210 3:95 "0""#,
+            r#"E0210 4:11 "1e200 * 1e200""#,
+            r#"E0210 5:22 "-1 s""#,
+            r#"E0207 5:39 "0""#,
+        ],
+    );
+}
+
+#[test]
+fn clauses_stand_once_and_advanced_moves_have_a_distance() {
+    check(
+        r#"
+cell "a.toml"
+cell "b.toml"
+error jam { severity fatal severity warning then stop then continue }
+error two { recover by reversing 2 actions, slower, slower otherwise stop otherwise operator respond at once respond at once }
+advanced move go { speed slow speed fast }
+advanced move on { distance 1 mm x distance 2 mm y }
+sequence main { wait 1 s }
+"#,
+        &[
+            r#"E0303 2:6 "\"b.toml\"""#,
+            r#"E0303 3:28 "severity warning""#,
+            r#"E0303 3:55 "then continue""#,
+            r#"E0303 4:53 "slower""#,
+            r#"E0303 4:75 "otherwise operator""#,
+            r#"E0303 4:110 "respond at once""#,
+            r#"E0304 5:15 "go""#,
+            r#"E0303 5:31 "speed fast""#,
+            r#"E0303 6:36 "distance 2 mm y""#,
+        ],
+    );
+}
+
+#[test]
+fn an_advanced_move_is_stopped_by_a_force_and_repeated_after_a_failure() {
+    check(
+        r#"
+advanced move a { distance 1 mm x stop if distance > 1 mm }
+advanced move b { distance 1 mm x stop if force < 1 N }
+advanced move c { distance 1 mm x stop if 5 N < force on success { repeat with perturbation 2 times } }
+advanced move d { distance 1 mm x on failure { repeat with perturbation 2 times repeat with perturbation 2 times } }
+advanced move e { distance 1 mm x stop if force > 1 mm succeeds if force }
+sequence main { wait 1 s }
+"#,
+        &[
+            r#"E0305 1:43 "distance > 1 mm""#,
+            r#"E0305 2:43 "force < 1 N""#,
+            r#"E0312 3:68 "repeat with perturbation 2 times""#,
+            r#"E0312 4:81 "repeat with perturbation 2 times""#,
+            r#"E0202 5:51 "1 mm""#,
+            r#"E0201 5:68 "force""#,
+        ],
+    );
+}
+
+#[test]
+fn errors_do_not_contradict_themselves() {
+    check(
+        r#"
+joints start = [0, -90, 90, -90, -90, 0] deg
+error a { severity fatal recover using fix then return to action }
+error b { severity warning otherwise operator }
+error c { recover using fix otherwise using fix }
+error d { recover using part }
+error e { recover by reversing to checkpoint nowhere }
+error f { severity fatal otherwise operator then stop }
+sequence fix { move to start }
+sequence part(n: int) { wait 1 s }
+sequence main { wait 1 s }
+"#,
+        &[
+            r#"E0309 2:26 "recover using fix""#,
+            r#"E0309 2:44 "then return to action""#,
+            r#"E0309 3:28 "otherwise operator""#,
+            r#"E0309 4:29 "otherwise using fix""#,
+            r#"E0308 5:25 "part""#,
+            r#"E0107 6:46 "nowhere""#,
+        ],
+    );
+}
+
+#[test]
+fn keyframes_of_items_that_are_passed_on() {
+    check(
+        r#"
+item peg { keyframe grasp = [0, 0, 20] mm }
+item nut { keyframe above = [0, 0, 20] mm }
+action outer(p: item) { call pick(p) }
+action pick(part: item) { move to part.grasp move to part.above }
+sequence main {
+  call outer(peg)
+  call outer(nut)
+  move to peg.gasp
+  var held = peg
+}
+"#,
+        &[
+            r#"E0104 6:14 "peg""#,
+            r#"E0104 7:14 "nut""#,
+            r#"E0104 8:15 "gasp""#,
+            r#"E0211 9:7 "held""#,
+        ],
+    );
+}
+
+#[test]
+fn only_variables_are_assigned() {
+    check(
+        r#"
+joints start = [0, -90, 90, -90, -90, 0] deg
+item peg { }
+action go(part: item, n: int) { n = 3 part = peg }
+sequence main { start = start for i from 1 to 2 { i += 1 } position p p = 3 }
+"#,
+        &[
+            r#"E0307 3:39 "part""#,
+            r#"E0307 4:17 "start""#,
+            r#"E0307 4:51 "i""#,
+            r#"E0307 4:71 "p""#,
+        ],
+    );
+}
+
+#[test]
+fn ways_out_of_loops_and_blocks() {
+    check(
+        r#"
+sequence main {
+  break
+  if holding { break }
+  skip in reverse { loop { break } }
+  loop { skip in reverse { break } }
+  do { return } in reverse { return }
+  do { wait 1 s } in reverse { break }
+}
+"#,
+        &[
+            r#"E0306 2:3 "break""#,
+            r#"E0306 3:16 "break""#,
+            r#"E0402 5:28 "break""#,
+            r#"W0002 6:3 "do { return } in reverse { return }""#,
+            r#"E0402 6:8 "return""#,
+            r#"E0306 7:32 "break""#,
+        ],
+    );
+}
+
+#[test]
+fn assertions() {
+    check(
+        r#"
+sequence main {
+  var n = 1
+  if n > 0 { n = 2 } ending when force > 1 N
+  if n > 0 { return } else { n = 3 } ending when n == 3
+  if n > 0 { n = 2 } ending when n
+  while n > 0 entered when random(0.0, 1.0) > 0.5 { n += 1 }
+  while n > 0 entered when n == 1 { return }
+}
+"#,
+        &[
+            r#"E0403 3:34 "force""#,
+            r#"E0404 4:50 "n == 3""#,
+            r#"E0201 5:34 "n""#,
+            r#"E0403 6:28 "random(0.0, 1.0)""#,
+            r#"E0404 7:28 "n == 1""#,
+        ],
+    );
+}
+
+#[test]
+fn the_position_named_last() {
+    check(
+        r#"
+joints a = [0, -90, 90, -90, -90, 0] deg
+joints b = [9, -90, 90, -90, -90, 0] deg
+sequence other { wait 1 s }
+action to(where: joints) { move to a move to where reversible always }
+sequence main {
+  move to a reversible always
+  move to a
+  move 3 mm up
+  move to b reversible always
+  call other
+  move to a reversible always
+  if holding { move to b reversible always move to a }
+  move to b reversible always
+  loop { move to a reversible always move to b reversible always if holding { break } }
+  move to a
+  move 2 mm up reversible always
+  call to(a)
+}
+"#,
+        &[
+            r#"E0019 4:8 "to""#,
+            r#"E0019 17:8 "to""#,
+        ],
+    );
+}
+
+#[test]
+fn what_a_block_in_reverse_sees() {
+    check(
+        r#"
+var total = 0
+sequence main {
+  var n = 1
+  do { n = 2 } in reverse { total = 1 var m = total m = n position p move to p }
+}
+"#,
+        &[
+            r#"E0405 4:57 "n""#,
+        ],
+    );
+}
+
+#[test]
+fn errors_and_barriers_in_blocks_with_a_reverse() {
+    check(
+        r#"
+error jam { }
+advanced move go { distance 1 mm x on failure { throw jam } }
+sequence fails { throw jam }
+sequence seals { barrier "sealed" }
+sequence main {
+  do { wait 1 s } in reverse { throw jam }
+  do { wait 1 s } in reverse { advance go }
+  do { wait 1 s } in reverse { call fails }
+  do { wait 1 s } in reverse { irreversible "glued" { wait 1 s } }
+  skip in reverse { barrier "x" }
+  skip in reverse { if holding { call seals } }
+}
+"#,
+        &[
+            r#"E0406 6:32 "throw jam""#,
+            r#"E0406 7:32 "advance go""#,
+            r#"E0406 8:32 "call fails""#,
+            r#"E0407 9:32 "irreversible \"glued\"""#,
+            r#"E0407 10:21 "barrier \"x\"""#,
+            r#"E0407 11:34 "call seals""#,
+        ],
+    );
+}
+
+#[test]
+fn warnings() {
+    check(
+        r#"
+joints unused = [0, 0, 0, 0, 0, 0] deg
+joints _spare = [0, 0, 0, 0, 0, 0] deg
+io unused_io { set 0 low }
+error unused_error { }
+sequence unused_sequence { wait 1 s }
+var written = 1
+sequence main {
+  written = 2
+  position here
+  var half = 1 / 2
+  if half > 0 { return wait 1 s wait 2 s }
+  loop { wait 1 s }
+  wait 3 s
+}
+"#,
+        &[
+            r#"W0001 1:8 "unused""#,
+            r#"W0001 3:4 "unused_io""#,
+            r#"W0001 4:7 "unused_error""#,
+            r#"W0001 5:10 "unused_sequence""#,
+            r#"W0001 6:5 "written""#,
+            r#"W0001 9:12 "here""#,
+            r#"W0003 10:14 "1 / 2""#,
+            r#"W0002 11:24 "wait 1 s""#,
+            r#"W0002 13:3 "wait 3 s""#,
+        ],
+    );
+}
+
+#[test]
+fn a_mistake_of_grammar_hides_no_mistake_of_meaning_and_makes_none() {
+    check(
+        r#"
+joints start = [0, -90, 90, -90, -90, 0] deg
+joints broken [1]
+sequence main {
+  move to start
+  move to broken
+  wait 3 mm
+  var = 3
+}
+"#,
+        &[
+            r#"E0010 2:15 "[""#,
+            r#"E0202 6:8 "3 mm""#,
+            r#"E0010 7:7 "=""#,
+        ],
+    );
+}
+
+#[test]
+fn a_program_begins_somewhere() {
+    check(
+        r#"
+action main { wait 1 s }
+"#,
+        &[
+            r#"E0302 1:8 "main""#,
+        ],
+    );
+}
+
+#[test]
+fn a_type_needs_a_value_somewhere() {
+    check(
+        r#"
+action go(part: item, where: joints) { wait 1 s }
+sequence main { wait 1 s }
+"#,
+        &[
+            r#"E0106 1:17 "item""#,
+            r#"E0106 1:30 "joints""#,
+        ],
+    );
+}

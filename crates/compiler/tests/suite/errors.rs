@@ -167,26 +167,26 @@ fn recover_and_do_the_sequence_again() {
         setting.set speed
         call go
         push.raised e
-        jump.unless +10
-        jump.unless.local.lt.imm $rounds 3 +5
+        jump.unless +9
+        jump.unless.local.lt.imm $rounds 3 +4
         call fix
         error.clear e
-        add.local.imm $rounds 1
         jump +9
-        land -5
+        land -4
         push.bool high
         store.global $leaving
-        jump +10
-        land -10
+        jump +11
+        land -9
         push.const 1.0
         wait
-        jump +5
+        jump +6
         land -9
+        add.local.imm $rounds 1
         push.local $0
         setting.set speed
         jump -22
-        land -5
-        join -10
+        land -6
+        join -11
         push.local $0
         setting.set speed
         return
@@ -461,27 +461,27 @@ fn a_recovery_does_not_begin_within_another() {
         join +22
         error.raise e
         push.global $recovering
-        jump.if +12
-        jump.unless.local.lt.imm $rounds 3 +12
+        jump.if +11
+        jump.unless.local.lt.imm $rounds 3 +11
         push.bool high
         store.global $recovering
         call fix
         push.bool low
         store.global $recovering
         push.global $leaving
-        jump.if +6
+        jump.if +5
         error.clear e
-        add.local.imm $rounds 1
         jump +7
-        land -12
-        join -12
-        join -6
+        land -11
+        join -11
+        join -5
         push.bool high
         store.global $leaving
-        jump +3
+        jump +4
         land -7
+        add.local.imm $rounds 1
         jump -22
-        land -3
+        land -4
         return
         ",
     );
@@ -501,42 +501,48 @@ fn a_block_with_a_reverse_is_left_by_its_end() {
         "main",
         "
         enter
-        join +33
+        join +39
         block.begin
+        push.int 0
+        store.local $way1
         sense.holding $0
         push.local $0
-        jump.unless +13
+        jump.unless +14
         error.raise e
-        jump.unless.local.lt.imm $rounds 3 +7
+        jump.unless.local.lt.imm $rounds 3 +6
         call fix
         error.clear e
-        add.local.imm $rounds 1
-        push.bool high
-        store.local $again1
-        jump +8
-        land -7
-        push.bool high
+        push.int 2
+        store.local $way1
+        jump +10
+        land -6
+        push.bool low
         store.global $leaving
+        push.int 1
+        store.local $way1
         jump +5
-        land -13
+        land -14
         push.const 1.0
         wait
-        join -8
+        join -10
         join -5
-        block.skip -21
-        push.local $again1
-        jump.unless +4
-        push.bool low
-        store.local $again1
-        jump +5
+        block.skip -24
+        push.local $way1
+        jump.unless.eq.imm 1 +4
+        push.bool high
+        store.global $leaving
+        jump +11
         land -4
-        push.global $leaving
-        jump.if +5
+        push.local $way1
+        jump.unless.eq.imm 2 +2
         jump +3
-        land -5
-        jump -33
+        land -2
+        jump +4
         land -3
-        join -5
+        add.local.imm $rounds 1
+        jump -39
+        land -4
+        join -11
         return
         ",
     );

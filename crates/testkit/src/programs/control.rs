@@ -249,6 +249,7 @@ impl Generator<'_, '_> {
 
     /// A setting for a block.
     fn scoped(&mut self) -> Result<()> {
+        self.frame.had_scope = true;
         let setting = self.setting()?;
         self.open(&setting);
         self.block(4)?;

@@ -34,6 +34,11 @@ impl Type {
         Self::Joints,
     ];
 
+    /// Whether its name can be written: `force` is a reading.
+    pub(super) fn has_name(self) -> bool {
+        self != Self::Force
+    }
+
     /// As declared.
     pub(super) fn name(self) -> &'static str {
         match self {
@@ -83,6 +88,8 @@ pub(super) struct Frame {
     pub(super) has_barrier: bool,
     /// Whether readings of the outside may stand in expressions.
     pub(super) may_read: bool,
+    /// TEMPORARY
+    pub(super) had_scope: bool,
 }
 
 impl Frame {

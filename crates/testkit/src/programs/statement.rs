@@ -48,7 +48,7 @@ impl Generator<'_, '_> {
                 self.declare(&name, of_type, true);
                 return Ok(());
             }
-            _ if self.one_in(3)? => format!(": {}", of_type.name()),
+            _ if of_type.has_name() && self.one_in(3)? => format!(": {}", of_type.name()),
             _ => String::new(),
         };
         self.line(&format!("var {name}{declared} = {value}"));
@@ -124,6 +124,9 @@ impl Generator<'_, '_> {
 
     /// A setting to the end of the sequence.
     fn modal(&mut self) -> Result<()> {
+        if self.frame.had_scope {
+            return self.motion();
+        }
         let setting = self.setting()?;
         self.line(&setting);
         Ok(())

@@ -28,6 +28,15 @@ struct Clauses<'p> {
     on_failure: Aftermath<'p>,
 }
 
+impl Clauses<'_> {
+    /// Whether anything follows from success or failure; otherwise it is not asked which it was.
+    fn matters(&self) -> bool {
+        [self.on_success, self.on_failure].iter().any(|aftermath| {
+            aftermath.returns || aftermath.repeats.is_some() || aftermath.throws.is_some()
+        })
+    }
+}
+
 /// How far, and in which direction.
 #[derive(Clone, Copy)]
 struct Way<'p> {
@@ -139,6 +148,9 @@ impl<'p> Interpreter<'p, '_> {
         let goal = self.displaced(numbers.distance_m, way.heading, way.frame);
         let report = self.go(goal, Path::Linear, Some(numbers.limit_n))?;
         self.speed = before;
+        if !clauses.matters() {
+            return Ok(true);
+        }
         let Some(condition) = clauses.succeeds else {
             return Ok(numbers.distance_m - SHORTFALL_M <= report.distance_m);
         };

@@ -196,14 +196,14 @@ impl<'p> Interpreter<'p, '_> {
     ) -> Run<Option<&'p Block<'p>>> {
         let bit = u16::try_from(input).unwrap_or(u16::MAX);
         let longest_s = self.value(timeout)?.real();
-        let begin_s = self.cell.now_s();
+        let mut looks = (longest_s / POLL_S).ceil();
         while self.cell.input(bit)? != high {
-            let left_s = longest_s - (self.cell.now_s() - begin_s);
-            if left_s <= 0.0 || left_s.is_nan() {
+            self.step()?;
+            if looks < 1.0 || looks.is_nan() {
                 return Ok(otherwise);
             }
-            self.step()?;
-            self.cell.wait(left_s.min(POLL_S))?;
+            looks -= 1.0;
+            self.cell.wait(POLL_S.min(longest_s))?;
         }
         Ok(None)
     }

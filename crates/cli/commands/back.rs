@@ -1,0 +1,70 @@
+//! `obverse back`: run a program, then take it back as far as it goes, and compare.
+
+use super::Result;
+use super::run;
+use crate::load;
+use crate::report;
+use crate::{Outcome, write};
+use obverse_recovery::Ending;
+use obverse_vm::Direction;
+use obverse_workcell::{Clock, Safety};
+use serde_json::{Map, json};
+
+pub(crate) type Arguments = run::Arguments;
+
+pub(crate) fn run(arguments: &Arguments) -> Result {
+    let program = load::program(&arguments.file)?;
+    let (mut cell, cell_name) =
+        load::workcell(&program, arguments.cell.as_deref(), arguments.seed)?;
+    let mut machine = load::machine(&program, &cell, &cell_name)?;
+    let module = program.verified.module();
+    run::head(arguments, &cell_name);
+    let start = machine.digest(&cell);
+    let there = run::go(arguments, &mut machine, Direction::Forward, &mut cell);
+    let (there_s, forward_instructions) = (cell.now_s(), machine.executed());
+    let tape_bits = machine.tape().map_or(0, obverse_tape::Tape::recorded_bits);
+    if !arguments.json {
+        write::line(&report::ending_words(module, &there));
+        write::line(&run::figures_line(&machine, &cell));
+        write::line("and back");
+    }
+    // The fresh command without which nothing moves after a stop.
+    if cell.is_stopped() {
+        cell.release();
+    }
+    let back = run::go(arguments, &mut machine, Direction::Reverse, &mut cell);
+    if let Some(path) = &arguments.tape {
+        run::record(path, &program, &machine, &cell, arguments.seed, &back)?;
+    }
+    let is_identical = back == Ending::AtStart && machine.digest(&cell) == start;
+    let back_s = cell.now_s() - there_s;
+    if arguments.json {
+        let mut figures = report::figures(&machine, &cell);
+        figures.insert("tape_bits".to_owned(), json!(tape_bits));
+        let mut more = Map::new();
+        more.insert("there".to_owned(), json!(there.code()));
+        more.insert("identical".to_owned(), json!(is_identical));
+        more.insert("stopped_at".to_owned(), report::place(module, report::ending_pc(&back)));
+        more.insert("message".to_owned(), json!(report::ending_words(module, &back)));
+        more.insert("forward_instructions".to_owned(), json!(forward_instructions));
+        more.insert("forward_time_s".to_owned(), json!(there_s));
+        more.insert("reverse_time_s".to_owned(), json!(back_s));
+        report::summary(back.code(), figures, more);
+    } else {
+        let verdict = match (&back, is_identical) {
+            (Ending::AtStart, true) => {
+                "the state is identical to the start, bit for bit".to_owned()
+            }
+            (Ending::AtStart, false) => {
+                "at the start, where a block with a reverse of its own left the workcell otherwise"
+                    .to_owned()
+            }
+            (other, _) => report::ending_words(module, other),
+        };
+        write::line(&verdict);
+        let instructions = machine.executed() - forward_instructions;
+        write::line(&format!("{instructions} instructions taken back, {back_s:.2} s"));
+    }
+    let went = matches!(back, Ending::AtStart | Ending::Refused(_));
+    Ok(if went { Outcome::Done } else { Outcome::EndedOtherwise })
+}

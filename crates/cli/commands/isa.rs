@@ -1,0 +1,71 @@
+//! `obverse isa`: show the instruction set.
+
+use super::Result;
+use crate::{Outcome, write};
+use obverse_isa::{Class, FINGERPRINT, OPS, OpInfo, reference};
+use serde_json::{Value, json};
+
+#[derive(clap::Args)]
+pub(crate) struct Arguments {
+    /// For machines: one JSON object.
+    #[arg(long)]
+    json: bool,
+}
+
+pub(crate) fn run(arguments: &Arguments) -> Result {
+    if arguments.json {
+        let table = json!({
+            "fingerprint": format!("{FINGERPRINT:016x}"),
+            "opcodes": OPS.iter().map(row).collect::<Vec<_>>(),
+        });
+        write::line(&table.to_string());
+    } else {
+        write::out(&listing());
+    }
+    Ok(Outcome::Done)
+}
+
+fn row(info: &OpInfo) -> Value {
+    let (record, why) = match info.class {
+        Class::Always => (None, None),
+        Class::AfterForward(kind) => (Some(kind.name()), None),
+        Class::Never(why) => (None, Some(why)),
+    };
+    let operand = |(name, kind): &(&str, obverse_isa::OperandKind)| json!({ "name": name, "kind": format!("{kind:?}").to_lowercase() });
+    let words = |items: &[obverse_isa::StackItem]| {
+        items.iter().map(ToString::to_string).collect::<Vec<_>>()
+    };
+    json!({
+        "code": info.code,
+        "mnemonic": info.mnemonic,
+        "operands": info.operands.iter().map(operand).collect::<Vec<_>>(),
+        "pops": words(info.pops),
+        "pushes": words(info.pushes),
+        "class": info.class.name(),
+        "record": record,
+        "why": why,
+        "family": info.family.name(),
+        "doc": reference::prose(info),
+    })
+}
+
+fn listing() -> String {
+    let mut text = String::new();
+    let mut family = None;
+    for info in OPS {
+        if family.replace(info.family) != Some(info.family) {
+            text.push_str(&format!("\n{}\n", info.family.name()));
+        }
+        let summary = reference::prose(info);
+        let summary = summary.split(". ").next().unwrap_or_default();
+        text.push_str(&format!(
+            "  {:02x}  {:24} {:22} {:30} {}\n",
+            info.code,
+            info.mnemonic,
+            info.class.name(),
+            reference::stack_picture(info),
+            summary.trim_end_matches('.')
+        ));
+    }
+    text.trim_start().to_owned()
+}

@@ -1,0 +1,16 @@
+//! The commands, one a file.
+
+pub(crate) mod back;
+pub(crate) mod build;
+pub(crate) mod check;
+pub(crate) mod dis;
+pub(crate) mod explain;
+pub(crate) mod isa;
+pub(crate) mod run;
+pub(crate) mod tape;
+
+use crate::Outcome;
+use crate::show::Problem;
+
+/// What every command returns.
+pub(crate) type Result = std::result::Result<Outcome, Problem>;

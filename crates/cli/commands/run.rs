@@ -1,0 +1,121 @@
+//! `obverse run`: run a program on the simulated workcell and tell what happens.
+
+use super::Result;
+use crate::load::{self, Program};
+use crate::report::{self, Report};
+use crate::show::Problem;
+use crate::story::Story;
+use crate::{Outcome, write};
+use obverse_recovery::{Ending, drive};
+use obverse_sim::Sim;
+use obverse_tape::TapeFile;
+use obverse_vm::{Direction, Limits, Machine};
+use obverse_workcell::Clock;
+use serde_json::{Map, json};
+use std::path::{Path, PathBuf};
+
+#[derive(clap::Args)]
+pub(crate) struct Arguments {
+    /// The program: source, assembly text or module.
+    pub(crate) file: PathBuf,
+    /// What all chance in the workcell follows from.
+    #[arg(long, default_value_t = 0)]
+    pub(crate) seed: u64,
+    /// The workcell file, in place of the one that the program names.
+    #[arg(long)]
+    pub(crate) cell: Option<PathBuf>,
+    /// Record the run to a tape file.
+    #[arg(long)]
+    pub(crate) tape: Option<PathBuf>,
+    /// Stop after about so many instructions.
+    #[arg(long, default_value_t = 1_000_000_000)]
+    pub(crate) limit: u64,
+    /// Tell the run to machines: JSON Lines, a summary last.
+    #[arg(long)]
+    pub(crate) json: bool,
+}
+
+pub(crate) fn run(arguments: &Arguments) -> Result {
+    let program = load::program(&arguments.file)?;
+    let (mut cell, cell_name) =
+        load::workcell(&program, arguments.cell.as_deref(), arguments.seed)?;
+    let mut machine = load::machine(&program, &cell, &cell_name)?;
+    head(arguments, &cell_name);
+    let ending = go(arguments, &mut machine, Direction::Forward, &mut cell);
+    if let Some(path) = &arguments.tape {
+        record(path, &program, &machine, &cell, arguments.seed, &ending)?;
+    }
+    finish(arguments, &machine, &cell, &ending);
+    Ok(if ending == Ending::Finished { Outcome::Done } else { Outcome::EndedOtherwise })
+}
+
+/// Say what is about to run.
+pub(crate) fn head(arguments: &Arguments, cell_name: &str) {
+    if !arguments.json {
+        let file = arguments.file.display();
+        write::line(&format!("{file} in {cell_name}, seed {}", arguments.seed));
+    }
+}
+
+/// Run in a direction, telling it as asked.
+pub(crate) fn go(
+    arguments: &Arguments,
+    machine: &mut Machine<'_>,
+    direction: Direction,
+    cell: &mut Sim,
+) -> Ending {
+    let module = machine.program().module();
+    let limits = Limits::instructions(arguments.limit);
+    if arguments.json {
+        drive(machine, direction, limits, cell, &mut Report::new(module))
+    } else {
+        drive(machine, direction, limits, cell, &mut Story::new(module))
+    }
+}
+
+/// Write the tape file of a run.
+pub(crate) fn record(
+    path: &Path,
+    program: &Program,
+    machine: &Machine<'_>,
+    cell: &Sim,
+    seed: u64,
+    ending: &Ending,
+) -> std::result::Result<(), Problem> {
+    let cannot = |error| Problem::new(format!("{}: {error}", path.display()));
+    let module = obverse_bytecode::encode(program.verified.module()).map_err(cannot)?;
+    let file = TapeFile {
+        fingerprint: obverse_bytecode::fingerprint(&module),
+        module,
+        seed,
+        ending: report::ending_words(program.verified.module(), ending),
+        state: machine.snapshot(cell),
+        streams: machine.streams(),
+    };
+    write::file(path, &file.to_bytes().map_err(cannot)?)
+}
+
+fn finish(arguments: &Arguments, machine: &Machine<'_>, cell: &Sim, ending: &Ending) {
+    let module = machine.program().module();
+    let words = report::ending_words(module, ending);
+    if arguments.json {
+        let mut more = Map::new();
+        more.insert("message".to_owned(), json!(words));
+        more.insert("stopped_at".to_owned(), report::place(module, report::ending_pc(ending)));
+        report::summary(ending.code(), report::figures(machine, cell), more);
+        return;
+    }
+    write::line(&words);
+    write::line(&figures_line(machine, cell));
+}
+
+/// The figures of a run on one line.
+pub(crate) fn figures_line(machine: &Machine<'_>, cell: &Sim) -> String {
+    let bits = machine.tape().map_or(0, obverse_tape::Tape::recorded_bits);
+    format!(
+        "{} instructions, {} commands, {bits} bits of tape, {:.2} s",
+        machine.executed(),
+        machine.commands(),
+        cell.now_s()
+    )
+}

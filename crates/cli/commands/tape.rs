@@ -1,0 +1,226 @@
+//! `obverse tape`: show what is on a recorded tape, newest first, and what it costs by instruction
+//! and by robot command.
+//!
+//! The tape has no tags: a record's meaning follows from the instruction that will pop it. So the
+//! listing walks a machine back over the tape, with a workcell that moves nothing.
+
+use super::Result;
+use crate::show::Problem;
+use crate::story::said;
+use crate::{Outcome, load, write};
+use obverse_bytecode::{Verified, verify};
+use obverse_geometry::JointConfiguration;
+use obverse_tape::{Place, TapeFile};
+use obverse_vm::{Direction, Machine, Stop};
+use obverse_workcell::Shadow;
+use serde_json::json;
+use std::collections::BTreeMap;
+use std::path::PathBuf;
+
+#[derive(clap::Args)]
+pub(crate) struct Arguments {
+    /// The tape file.
+    file: PathBuf,
+    /// Show at most so many records.
+    #[arg(long, default_value_t = 40)]
+    records: usize,
+    /// For machines: JSON Lines, a summary last.
+    #[arg(long)]
+    json: bool,
+}
+
+/// What one instruction's records cost.
+#[derive(Default)]
+struct Cost {
+    records: u64,
+    bits: u64,
+    commands: bool,
+}
+
+/// One record as the walk meets it.
+struct Entry {
+    pc: u32,
+    size: Place,
+    what: String,
+}
+
+pub(crate) fn run(arguments: &Arguments) -> Result {
+    let path = arguments.file.display();
+    let (file, module) = TapeFile::from_bytes(&load::bytes(&arguments.file)?)
+        .map_err(|error| Problem::new(format!("{path}: {error}")))?;
+    let program = verify(module).map_err(|errors| {
+        Problem::several(errors.iter().map(|error| format!("{path}: {error}")).collect())
+    })?;
+    let (entries, stop) =
+        walk(&program, &file).map_err(|error| Problem::new(format!("{path}: {error}")))?;
+    let mut costs: BTreeMap<&'static str, Cost> = BTreeMap::new();
+    for entry in &entries {
+        let info = program.module().code[entry.pc as usize].info();
+        let cost = costs.entry(info.mnemonic).or_default();
+        cost.records += 1;
+        cost.bits += entry.size.size_bits();
+        cost.commands = info.family.commands_workcell();
+    }
+    if arguments.json {
+        as_json(arguments, &program, &file, &entries, &costs);
+    } else {
+        as_text(arguments, &program, &file, &entries, &costs, &stop);
+    }
+    Ok(Outcome::Done)
+}
+
+fn walk(
+    program: &Verified,
+    file: &TapeFile,
+) -> std::result::Result<(Vec<Entry>, Stop), obverse_vm::SnapshotError> {
+    let state = &file.state;
+    let mut cell = Shadow::new(JointConfiguration(state.joints), state.outputs.clone());
+    let mut machine = Machine::from_recording(program, state, &file.streams, &cell)?;
+    let mut entries = Vec::new();
+    loop {
+        let before = place(&machine);
+        let pc = machine.state().pc();
+        let is_pending =
+            machine.state().pending().is_some_and(|p| p.direction == Direction::Forward);
+        let top = newest(&machine);
+        if let Err(stop) = machine.step(Direction::Reverse, &mut cell, &mut ()) {
+            return Ok((entries, stop));
+        }
+        let size = less(before, place(&machine));
+        if size != Place::default() {
+            let pc = if is_pending { pc } else { pc.saturating_sub(1) };
+            entries.push(Entry { pc, size, what: describe(size, &top) });
+        }
+    }
+}
+
+fn place(machine: &Machine<'_>) -> Place {
+    machine.tape().map(obverse_tape::Tape::place).unwrap_or_default()
+}
+
+fn less(a: Place, b: Place) -> Place {
+    Place { bits: a.bits - b.bits, words: a.words - b.words, joints: a.joints - b.joints }
+}
+
+/// The newest record of each stream.
+struct Newest {
+    bit: Option<bool>,
+    word: Option<u64>,
+    joints: Option<[f64; 6]>,
+}
+
+fn newest(machine: &Machine<'_>) -> Newest {
+    let tape = machine.tape();
+    Newest {
+        bit: tape.and_then(obverse_tape::Tape::newest_bit),
+        word: tape.and_then(obverse_tape::Tape::newest_word),
+        joints: tape.and_then(obverse_tape::Tape::newest_joints),
+    }
+}
+
+fn describe(size: Place, top: &Newest) -> String {
+    let numbers = |joints: [f64; 6]| {
+        let shown: Vec<String> = joints.iter().map(|joint| format!("{joint:.4}")).collect();
+        format!("[{}] rad", shown.join(", "))
+    };
+    match (size, top) {
+        (Place { bits: 1, words: 0, joints: 0 }, Newest { bit: Some(bit), .. }) => {
+            format!("bit {}", u8::from(*bit))
+        }
+        (Place { bits: 0, words: 1, joints: 0 }, Newest { word: Some(word), .. }) => {
+            format!("word {word:#x}")
+        }
+        (Place { bits: 0, words: 0, joints: 1 }, Newest { joints: Some(joints), .. }) => {
+            format!("joints {}", numbers(*joints))
+        }
+        (size, _) => format!("frame of {} words, {} positions", size.words, size.joints),
+    }
+}
+
+fn as_text(
+    arguments: &Arguments,
+    program: &Verified,
+    file: &TapeFile,
+    entries: &[Entry],
+    costs: &BTreeMap<&'static str, Cost>,
+    stop: &Stop,
+) {
+    let module = program.module();
+    let source = module.sources.first().map_or("a program", |source| source.name.as_str());
+    write::line(&format!("{source}, fingerprint {:016x}, seed {}", file.fingerprint, file.seed));
+    write::line(&format!("ended: {}", file.ending));
+    write::line(&format!("\n{:>6}  {:18} {:40} record, newest first", "instr", "opcode", "source"));
+    for entry in entries.iter().take(arguments.records) {
+        let mnemonic = module.code[entry.pc as usize].info().mnemonic;
+        let text = said(module, entry.pc);
+        write::line(&format!("{:>6}  {mnemonic:18} {text:40} {}", entry.pc, entry.what));
+    }
+    let hidden = entries.len().saturating_sub(arguments.records);
+    if hidden > 0 {
+        write::line(&format!("        and {hidden} more; --records {} shows them", entries.len()));
+    }
+    write::line(&format!("\n{:18} {:>8} {:>10} {:>12}", "opcode", "records", "bits", "bits each"));
+    for (mnemonic, cost) in costs {
+        let each = cost.bits as f64 / cost.records as f64;
+        let command = if cost.commands { "  robot command" } else { "" };
+        write::line(&format!(
+            "{mnemonic:18} {:>8} {:>10} {each:>12.1}{command}",
+            cost.records, cost.bits
+        ));
+    }
+    let live: u64 = costs.values().map(|cost| cost.bits).sum();
+    write::line(&format!(
+        "\n{live} bits are on the tape, {} were dropped",
+        file.streams.dropped_bits
+    ));
+    let back_to = match stop {
+        Stop::AtStart => "they lead back to the start".to_owned(),
+        Stop::Refused(refusal) => format!("they lead back to {}", said(module, refusal.pc)),
+        other => format!("the walk back ended in {other:?}"),
+    };
+    write::line(&back_to);
+}
+
+fn as_json(
+    arguments: &Arguments,
+    program: &Verified,
+    file: &TapeFile,
+    entries: &[Entry],
+    costs: &BTreeMap<&'static str, Cost>,
+) {
+    let module = program.module();
+    for entry in entries.iter().take(arguments.records) {
+        let line = module.place_of(entry.pc).map(|(_, line, _)| line);
+        write::line(
+            &json!({
+                "type": "record",
+                "instruction": entry.pc,
+                "opcode": module.code[entry.pc as usize].info().mnemonic,
+                "line": line,
+                "bits": entry.size.size_bits(),
+                "record": entry.what,
+            })
+            .to_string(),
+        );
+    }
+    let cost = |(mnemonic, cost): (&&str, &Cost)| {
+        json!({
+            "opcode": mnemonic,
+            "records": cost.records,
+            "bits": cost.bits,
+            "robot_command": cost.commands,
+        })
+    };
+    write::line(
+        &json!({
+            "type": "summary",
+            "fingerprint": format!("{:016x}", file.fingerprint),
+            "seed": file.seed,
+            "ending": file.ending,
+            "records": entries.len(),
+            "dropped_bits": file.streams.dropped_bits,
+            "costs": costs.iter().map(cost).collect::<Vec<_>>(),
+        })
+        .to_string(),
+    );
+}

@@ -1,0 +1,143 @@
+//! A run for machines, as JSON Lines on standard output: an object an event, and a summary last.
+
+use crate::story;
+use crate::write;
+use obverse_bytecode::Module;
+use obverse_recovery::Ending;
+use obverse_vm::{Direction, Event, Machine, Observer};
+use obverse_workcell::{MotionEnd, Workcell};
+use serde_json::{Map, Value, json};
+
+/// Tells a run to machines as it happens.
+pub(crate) struct Report<'m> {
+    module: &'m Module,
+}
+
+impl<'m> Report<'m> {
+    pub(crate) fn new(module: &'m Module) -> Self {
+        Self { module }
+    }
+}
+
+impl Observer for Report<'_> {
+    fn on_event(&mut self, event: &Event, cell: &dyn Workcell) {
+        let mut object = json!({
+            "type": "event",
+            "direction": direction(event.direction),
+            "instruction": event.pc,
+            "opcode": event.instr.info().mnemonic,
+            "class": event.instr.info().class.name(),
+            "calls": event.frames,
+            "time_s": cell.now_s(),
+        });
+        if let Some((file, line, column)) = self.module.place_of(event.pc) {
+            object["file"] = json!(file);
+            object["line"] = json!(line);
+            object["column"] = json!(column);
+        }
+        if let Some(report) = event.report {
+            object["distance_m"] = json!(report.distance_m);
+            object["peak_force_n"] = json!(report.peak_force_n);
+            object["duration_s"] = json!(report.duration_s);
+            object["stopped_by_force"] = json!(report.end == MotionEnd::StoppedByForce);
+        }
+        if let Some(outcome) = story::outcome_of(self.module, event, cell) {
+            object["outcome"] = json!(outcome);
+        }
+        write::line(&object.to_string());
+    }
+}
+
+fn direction(direction: Direction) -> &'static str {
+    match direction {
+        Direction::Forward => "forward",
+        Direction::Reverse => "reverse",
+    }
+}
+
+/// The figures of a run.
+pub(crate) fn figures(machine: &Machine<'_>, cell: &dyn Workcell) -> Map<String, Value> {
+    let tape = machine.tape();
+    let mut object = Map::new();
+    object.insert("instructions".to_owned(), json!(machine.executed()));
+    object.insert("commands".to_owned(), json!(machine.commands()));
+    object.insert("tape_bits".to_owned(), json!(tape.map_or(0, |tape| tape.recorded_bits())));
+    object.insert("time_s".to_owned(), json!(cell.now_s()));
+    object.insert("digest".to_owned(), json!(format!("{:016x}", machine.digest(cell))));
+    object
+}
+
+/// The last line of a run.
+pub(crate) fn summary(outcome: &str, figures: Map<String, Value>, more: Map<String, Value>) {
+    let mut object = Map::new();
+    object.insert("type".to_owned(), json!("summary"));
+    object.insert("outcome".to_owned(), json!(outcome));
+    object.extend(figures);
+    object.extend(more);
+    write::line(&Value::Object(object).to_string());
+}
+
+/// Where an ending happened, for machines; null if nowhere.
+pub(crate) fn place(module: &Module, pc: Option<u32>) -> Value {
+    let Some(pc) = pc else { return Value::Null };
+    let instr = module.code.get(pc as usize).map(|instr| instr.info().mnemonic);
+    let mut object = json!({ "instruction": pc, "opcode": instr });
+    if let Some((file, line, column)) = module.place_of(pc) {
+        object["file"] = json!(file);
+        object["line"] = json!(line);
+        object["column"] = json!(column);
+    }
+    object
+}
+
+/// The instruction that an ending is about.
+pub(crate) fn ending_pc(ending: &Ending) -> Option<u32> {
+    match ending {
+        Ending::Refused(refusal) => Some(refusal.pc),
+        Ending::Fault { pc, .. } => Some(*pc),
+        Ending::Trap(trap) => Some(trap.pc),
+        Ending::Finished | Ending::Unhandled(_) | Ending::AtStart | Ending::Budget => None,
+    }
+}
+
+/// An ending in words, with its place and what to do.
+pub(crate) fn ending_words(module: &Module, ending: &Ending) -> String {
+    let at = ending_pc(ending).and_then(|pc| {
+        let (file, line, _) = module.place_of(pc)?;
+        Some(format!("{file}:{line} `{}`", story::said(module, pc)))
+    });
+    let at = at.or_else(|| ending_pc(ending).map(|pc| format!("instruction {pc}")));
+    let at = at.unwrap_or_default();
+    match ending {
+        Ending::Finished => "finished".to_owned(),
+        Ending::Unhandled(errors) => {
+            let names: Vec<&str> =
+                errors.iter().map(|error| module.errors[error.index()].name.as_str()).collect();
+            format!("stopped: nothing dealt with error {}", names.join(", "))
+        }
+        Ending::AtStart => "back at the start".to_owned(),
+        Ending::Budget => "stopped: the limit of instructions is reached".to_owned(),
+        Ending::Refused(refusal) => {
+            let reason = refusal.reason.and_then(|reason| module.reasons.get(reason.index()));
+            let why = reason.map_or(refusal.why, String::as_str);
+            format!("cannot go back past {at}: {why}")
+        }
+        Ending::Fault { fault, direction, .. } => {
+            let way = match direction {
+                Direction::Forward => "",
+                Direction::Reverse => "going back over ",
+            };
+            format!("fault: {way}{at}: {fault}")
+        }
+        Ending::Trap(trap) => {
+            let reason = match trap.kind {
+                obverse_vm::TrapKind::Required(reason) => {
+                    module.reasons.get(reason.index()).cloned()
+                }
+                _ => None,
+            };
+            let why = reason.unwrap_or_else(|| trap.kind.to_string());
+            format!("trap: {at}: {why}")
+        }
+    }
+}

@@ -1,0 +1,63 @@
+//! Motions in few words.
+
+#![allow(dead_code, reason = "each test file uses its own part of this")]
+
+use obverse_geometry::{Axis, Frame, JointConfiguration, Pose};
+use obverse_sim::{Cell, Sim};
+use obverse_workcell::{Goal, Motion, Path, Speed, ToolId, Workcell};
+
+pub fn peg_in_hole() -> Cell {
+    Cell::parse(include_str!("../../../../programs/peg_in_hole.toml")).expect("peg_in_hole.toml")
+}
+
+pub fn bench_cell() -> Cell {
+    Cell::parse(include_str!("../../../../programs/bench_cell.toml")).expect("bench_cell.toml")
+}
+
+pub fn by_joints(joints: JointConfiguration) -> Motion {
+    Motion {
+        goal: Goal::Joints(joints),
+        path: Path::Joint,
+        speed: Speed::Normal,
+        tool: ToolId(0),
+        force_limit_n: None,
+    }
+}
+
+pub fn by_line(joints: JointConfiguration) -> Motion {
+    Motion { path: Path::Linear, ..by_joints(joints) }
+}
+
+pub fn to_pose(pose: Pose, path: Path) -> Motion {
+    Motion { goal: Goal::Pose(pose), path, ..by_joints(JointConfiguration::ZERO) }
+}
+
+/// Along the tool's z from `from`, stopping at a force.
+pub fn push(from: JointConfiguration, distance_m: f64, limit_n: f64) -> Motion {
+    Motion {
+        goal: Goal::Displaced { from, distance_m, axis: Axis::PlusZ, frame: Frame::Tcp },
+        path: Path::Linear,
+        speed: Speed::Slow,
+        tool: ToolId(0),
+        force_limit_n: Some(limit_n),
+    }
+}
+
+/// Along the tool's z from `from`, without a guard.
+pub fn advance(from: JointConfiguration, distance_m: f64) -> Motion {
+    Motion { force_limit_n: None, ..push(from, distance_m, 1.0) }
+}
+
+/// Everything about a workcell, commanded or not, as bits.
+pub fn world_bits(sim: &Sim) -> Vec<u64> {
+    let mut bits = Vec::new();
+    sim.world_state(&mut |word| bits.push(word));
+    bits
+}
+
+/// What a program can command, as bits.
+pub fn commanded_bits(sim: &Sim) -> Vec<u64> {
+    let mut bits = Vec::new();
+    sim.commanded_state(&mut |word| bits.push(word));
+    bits
+}
