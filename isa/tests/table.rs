@@ -175,14 +175,13 @@ fn classes_are_as_the_families_demand() {
             Class::Always | Class::Never(_) => true,
         };
         let is_right = match row.family {
-            Family::Value => saves(&[]),
+            Family::Value | Family::Reversal => saves(&[]),
             Family::Variable | Family::Setting | Family::Error => saves(&[RecordKind::Word]),
             Family::Flow => saves(&[RecordKind::Bit, RecordKind::Counter]),
             Family::Frame => saves(&[RecordKind::Frame]),
             Family::Kinematic => saves(&[RecordKind::Joints]),
             Family::Sense => saves(&[RecordKind::Word, RecordKind::Joints]),
             Family::Io => saves(&[RecordKind::Bit]),
-            Family::Reversal => saves(&[RecordKind::Position]),
         };
         assert!(is_right, "{}: {}", row.mnemonic, row.class);
         if let Class::Never(why) = row.class {

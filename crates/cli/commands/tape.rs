@@ -83,7 +83,7 @@ fn walk(
         let is_pending =
             machine.state().pending().is_some_and(|p| p.direction == Direction::Forward);
         let top = newest(&machine);
-        if let Err(stop) = machine.step(Direction::Reverse, &mut cell, &mut ()) {
+        if let Err(stop) = machine.unwind(&mut cell) {
             return Ok((entries, stop));
         }
         let size = less(before, place(&machine));

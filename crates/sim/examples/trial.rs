@@ -7,7 +7,9 @@ fn mv(goal: Goal, path: Path, speed: Speed, f: Option<f64>) -> Motion {
     Motion { goal, path, speed, tool: ToolId(0), force_limit_n: f }
 }
 fn main() {
-    if std::env::var("PER").is_ok() { per(); }
+    if std::env::var("PER").is_ok() {
+        per();
+    }
     let cell = Cell::parse(&std::fs::read_to_string("programs/peg_in_hole.toml").unwrap()).unwrap();
     let n = 200u64;
     let mut done = 0;

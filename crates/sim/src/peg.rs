@@ -39,7 +39,8 @@
 //! - *wedged*: two points first touch at a depth `h <= 2 m r`. Then the line between them lies in
 //!   both cones of friction, the couple can no longer right the peg, and it is stuck there however
 //!   hard it is pushed: `F = K p` again. For small angles that is a tilt above
-//!   `(R - r) / (m r)`, Whitney's wedging angle.
+//!   `(R - r) / (m r)`, Whitney's wedging angle. A peg that is thicker than the hole is stuck where
+//!   the cone has its width.
 //! - *bottom*: the end meets the bottom: `F = K p` added to what the wall takes.
 
 use nalgebra::{Vector2, Vector3};
@@ -103,7 +104,7 @@ pub enum Stage {
     OnePoint,
     /// Touching wall and throat on opposite sides.
     TwoPoint,
-    /// Stuck between wall and throat.
+    /// Stuck between wall and throat, or too thick.
     Wedged,
     /// On the bottom.
     Bottom,
@@ -237,12 +238,14 @@ impl Fit {
     /// Contact in the cone and the bore, sideways along and across the tilt.
     fn in_hole(&self, peg: &Tilted) -> Contact {
         let below_throat = peg.rim_z - self.hole_chamfer_mm;
+        let too_narrow = below_throat - (self.hole_radius_mm - self.peg_radius_mm);
+        if self.peg_radius_mm > self.hole_radius_mm && too_narrow > 0.0 {
+            return self.stuck(too_narrow);
+        }
         let two_points = self.two_point_depth(peg.sin, peg.cos);
         if below_throat > 0.0 && below_throat > two_points {
             if two_points <= 2.0 * self.friction * self.peg_radius_mm {
-                let stuck = below_throat - two_points.max(0.0);
-                let axial_n = self.stiffness_n_per_mm * stuck;
-                return Contact { stage: Stage::Wedged, axial_n, lateral_n: Vector2::zeros() };
+                return self.stuck(below_throat - two_points.max(0.0));
             }
             return self.two_points(peg, below_throat);
         }
@@ -253,6 +256,11 @@ impl Fit {
             _ => self.friction,
         };
         Contact { stage, axial_n: slope * lateral_n.norm(), lateral_n }
+    }
+
+    fn stuck(&self, pressed_mm: f64) -> Contact {
+        let axial_n = self.stiffness_n_per_mm * pressed_mm;
+        Contact { stage: Stage::Wedged, axial_n, lateral_n: Vector2::zeros() }
     }
 
     /// The least way that the hole pushes the peg aside, and what pushes.

@@ -26,8 +26,7 @@ fn ready(seed: u64) -> Sim {
 fn attempt(sim: &mut Sim, number: u64) -> Result<MotionReport, Fault> {
     if number > 0 {
         let aside = |axis| 1e-3 * (2.0 * sim.draw(2 * number + axis) - 1.0);
-        let goal =
-            Goal::Offset { from: START, by_m: [aside(0), aside(1), 0.0], frame: Frame::Tcp };
+        let goal = Goal::Offset { from: START, by_m: [aside(0), aside(1), 0.0], frame: Frame::Tcp };
         sim.execute(&Motion { goal, ..by_line(START) })?;
     }
     let from = sim.joints();

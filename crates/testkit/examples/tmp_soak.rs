@@ -1,6 +1,6 @@
 //! x
 use arbitrary::Unstructured;
-use obverse_testkit::{laws, programs, reference, logged::Logged};
+use obverse_testkit::{laws, logged::Logged, programs, reference};
 use std::collections::BTreeMap;
 fn bytes(seed: u64) -> Vec<u8> {
     let mut state = seed;
@@ -20,19 +20,35 @@ fn main() {
     let (mut total, mut lines) = (0usize, 0usize);
     for seed in a..b {
         let by = bytes(seed);
-        let Ok(src) = programs::generate(&mut Unstructured::new(&by), programs::Options::default()) else { continue };
+        let Ok(src) = programs::generate(&mut Unstructured::new(&by), programs::Options::default())
+        else {
+            continue;
+        };
         lines += src.lines().count();
-        for (name, law) in [("f", laws::agrees_forward as fn(&mut Unstructured<'_>) -> arbitrary::Result<()>), ("b", laws::agrees_backward)] {
-            let r = std::panic::catch_unwind(|| { let _ = law(&mut Unstructured::new(&by)); });
-            if r.is_err() { println!("FAIL {name} {seed}"); }
+        for (name, law) in [
+            ("f", laws::agrees_forward as fn(&mut Unstructured<'_>) -> arbitrary::Result<()>),
+            ("b", laws::agrees_backward),
+        ] {
+            let r = std::panic::catch_unwind(|| {
+                let _ = law(&mut Unstructured::new(&by));
+            });
+            if r.is_err() {
+                println!("FAIL {name} {seed}");
+            }
         }
         let p = obverse_syntax::parse(&src);
         let mut cell = Logged::new(seed);
-        let o = reference::run(&p.program, &mut cell, reference::Limits { steps: 6000, ..Default::default() });
+        let o = reference::run(
+            &p.program,
+            &mut cell,
+            reference::Limits { steps: 6000, ..Default::default() },
+        );
         total += o.history.len();
         let key = format!("{:?}", o.ending);
         *endings.entry(key.chars().take(40).collect()).or_default() += 1;
-        if !o.last.raised.is_empty() { *endings.entry("(pending)".into()).or_default() += 1; }
+        if !o.last.raised.is_empty() {
+            *endings.entry("(pending)".into()).or_default() += 1;
+        }
     }
     println!("{endings:?} history {total} lines {lines}");
 }

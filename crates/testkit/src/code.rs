@@ -81,8 +81,7 @@ fn function(index: u16, first: u32, end: u32) -> Function {
         .enumerate()
         .map(|(at, of_type)| Variable { name: format!("v{at}"), of_type })
         .collect();
-    // The last function takes a block's place, so it has no parameters.
-    let parameters = if index == 0 || index + 1 == FUNCTIONS { 0 } else { 2 };
+    let parameters = if has_parameters(index) { 2 } else { 0 };
     Function {
         name: format!("f{index}"),
         kind,
@@ -93,6 +92,11 @@ fn function(index: u16, first: u32, end: u32) -> Function {
         first,
         end,
     }
+}
+
+/// Functions without parameters can take a block's place: the last, and one before most calls of it.
+fn has_parameters(index: u16) -> bool {
+    index == 2
 }
 
 fn tables() -> Module {
@@ -743,7 +747,7 @@ impl Body<'_, '_> {
             return self.update();
         }
         let function = FunctionId(self.u.int_in_range(next..=FUNCTIONS - 1)?);
-        if function.0 + 1 < FUNCTIONS {
+        if has_parameters(function.0) {
             self.int(1, None)?;
             self.int(1, None)?;
         }
@@ -756,10 +760,17 @@ impl Body<'_, '_> {
         let was_in_block = std::mem::replace(&mut self.in_block, true);
         self.nested()?;
         self.in_block = was_in_block;
-        if self.flip()? || self.index + 1 >= FUNCTIONS {
-            self.code.push(op::BlockSkip { from });
-        } else {
-            self.code.push(op::BlockReplace { function: FunctionId(FUNCTIONS - 1), from });
+        match self.pick(3)? {
+            0 => drop(self.code.push(op::BlockSkip { from })),
+            // A function that comes before this one, or after it; never itself, so that going back
+            // ends.
+            1 if self.index > 1 => {
+                self.code.push(op::BlockReplace { function: FunctionId(1), from });
+            }
+            _ if self.index + 1 < FUNCTIONS => {
+                self.code.push(op::BlockReplace { function: FunctionId(FUNCTIONS - 1), from });
+            }
+            _ => drop(self.code.push(op::BlockSkip { from })),
         }
         Ok(())
     }

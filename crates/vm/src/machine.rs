@@ -6,7 +6,7 @@ use crate::state::{Direction, Frame, State};
 use crate::step::{Host, Observer, Outcome};
 use crate::stop::Stop;
 use obverse_bytecode::Verified;
-use obverse_isa::Instr;
+use obverse_isa::{Class, Instr};
 use obverse_tape::{NoTape, Tape};
 use obverse_workcell::Workcell;
 use xxhash_rust::xxh3::Xxh3;
@@ -196,6 +196,22 @@ impl<'p> Machine<'p> {
         }
     }
 
+    /// One step back of the program's own state, commanding nothing, whatever the program says of
+    /// its reverse: for looking at what is on the tape.
+    ///
+    /// # Errors
+    /// Why there is no such step: the start, or an instruction before which the tape was dropped.
+    pub fn unwind(&mut self, cell: &mut dyn Workcell) -> Outcome {
+        let never = self.state.place.pc.checked_sub(1).map(|at| self.program.module().code[at]);
+        let is_never = never.is_some_and(|instr| matches!(instr.info().class, Class::Never(_)));
+        let passes_over = !is_never || self.state.open_blocks > 0;
+        let mut host = Host { cell, observer: &mut () };
+        self.is_muted = passes_over;
+        let outcome = self.step_reverse(&mut host);
+        self.is_muted = false;
+        outcome
+    }
+
     fn step_forward(&mut self, host: &mut Host<'_>) -> Outcome {
         if self.state.pending.is_some() {
             return self.count(|machine| machine.slow_forward(host));
@@ -288,7 +304,7 @@ impl<'p> Machine<'p> {
     fn count(&mut self, run: impl FnOnce(&mut Self) -> Outcome) -> Outcome {
         let before = self.state.steps();
         let outcome = run(self);
-        self.executed += self.state.steps().abs_diff(before);
+        self.executed = self.executed.saturating_add(self.state.steps().abs_diff(before));
         outcome
     }
 

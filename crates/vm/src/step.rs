@@ -544,7 +544,8 @@ impl Machine<'_> {
             place: self.state.place,
         });
         self.state.frames.push(Frame::new(function.0, declared, at as u32 + 1));
-        self.state.place.pc = declared.first as usize + 1;
+        self.state.place.pc = at;
+        self.state.place.jump_forward(declared.first as usize);
         self.tell(Direction::Reverse, at, None, host);
         Ok(())
     }

@@ -323,9 +323,7 @@ impl<'s> Checker<'s> {
             }
             Some(Around::Reversed(block)) => {
                 let block = *block;
-                let has_loop =
-                    self.frame.around.iter().any(|around| matches!(around, Around::Loop { .. }));
-                if has_loop {
+                if self.leave_all_loops() {
                     self.report_leaves_reversed("break", span, block);
                     return None;
                 }
@@ -335,6 +333,19 @@ impl<'s> Checker<'s> {
         let message = "`break` stands in no loop".to_owned();
         self.reports.error(Code::BreakOutsideLoop, span, message, "nothing to leave");
         None
+    }
+
+    /// Take the loops around for left, so that nothing follows from a `break` that cannot be;
+    /// whether there are any.
+    fn leave_all_loops(&mut self) -> bool {
+        let mut any = false;
+        for around in &mut self.frame.around {
+            if let Around::Loop { breaks } = around {
+                *breaks = true;
+                any = true;
+            }
+        }
+        any
     }
 
     fn leave_sequence(&mut self, span: Span) -> Checked {

@@ -106,12 +106,7 @@ sequence main {
   if c > 1 { var d = 1 } else { var d = 2 }
 }
 "#,
-        &[
-            r#"E0102 2:10 "n""#,
-            r#"E0102 3:19 "a""#,
-            r#"E0102 6:18 "c""#,
-            r#"E0102 7:7 "c""#,
-        ],
+        &[r#"E0102 2:10 "n""#, r#"E0102 3:19 "a""#, r#"E0102 6:18 "c""#, r#"E0102 7:7 "c""#],
     );
 }
 
@@ -127,7 +122,8 @@ sequence main {
   call go(1)
   var n = 3
   var r = n * 2.5
-  var ok = 1 and true
+  var ok = true
+  ok = 1 and true
   if n { wait 1 s }
   while 3 mm { wait 1 s }
   repeat 1.5 times { wait 1 s }
@@ -144,13 +140,14 @@ sequence main {
             r#"E0203 5:19 "3""#,
             r#"E0208 6:3 "call go(1)""#,
             r#"E0201 8:11 "n""#,
-            r#"E0201 9:12 "1""#,
-            r#"E0201 10:6 "n""#,
-            r#"E0201 11:9 "3 mm""#,
-            r#"E0201 12:10 "1.5""#,
-            r#"E0201 13:14 "1 mm""#,
-            r#"E0201 15:8 "true""#,
-            r#"E0201 16:11 "3""#,
+            r#"E0201 10:8 "1""#,
+            r#"E0201 11:6 "n""#,
+            r#"E0201 12:9 "3 mm""#,
+            r#"E0201 13:10 "1.5""#,
+            r#"E0201 14:14 "1 mm""#,
+            r#"E0201 15:3 "ok""#,
+            r#"E0201 16:8 "true""#,
+            r#"E0201 17:11 "3""#,
         ],
     );
 }
@@ -400,7 +397,6 @@ sequence main {
             r#"E0306 2:3 "break""#,
             r#"E0306 3:16 "break""#,
             r#"E0402 5:28 "break""#,
-            r#"W0002 6:3 "do { return } in reverse { return }""#,
             r#"E0402 6:8 "return""#,
             r#"E0306 7:32 "break""#,
         ],
@@ -437,7 +433,7 @@ fn the_position_named_last() {
 joints a = [0, -90, 90, -90, -90, 0] deg
 joints b = [9, -90, 90, -90, -90, 0] deg
 sequence other { wait 1 s }
-action to(where: joints) { move to a move to where reversible always }
+action go(where: joints) { move to a move to where reversible always }
 sequence main {
   move to a reversible always
   move to a
@@ -450,12 +446,17 @@ sequence main {
   loop { move to a reversible always move to b reversible always if holding { break } }
   move to a
   move 2 mm up reversible always
-  call to(a)
+  call go(a)
 }
 "#,
         &[
-            r#"E0019 4:8 "to""#,
-            r#"E0019 17:8 "to""#,
+            r#"E0401 4:52 "reversible always""#,
+            r#"E0401 6:13 "reversible always""#,
+            r#"E0401 9:13 "reversible always""#,
+            r#"E0401 11:13 "reversible always""#,
+            r#"E0401 13:13 "reversible always""#,
+            r#"E0401 14:20 "reversible always""#,
+            r#"E0401 16:16 "reversible always""#,
         ],
     );
 }
@@ -470,9 +471,7 @@ sequence main {
   do { n = 2 } in reverse { total = 1 var m = total m = n position p move to p }
 }
 "#,
-        &[
-            r#"E0405 4:57 "n""#,
-        ],
+        &[r#"E0405 4:57 "n""#],
     );
 }
 
@@ -550,11 +549,7 @@ sequence main {
   var = 3
 }
 "#,
-        &[
-            r#"E0010 2:15 "[""#,
-            r#"E0202 6:8 "3 mm""#,
-            r#"E0010 7:7 "=""#,
-        ],
+        &[r#"E0010 2:15 "[""#, r#"E0202 6:8 "3 mm""#, r#"E0010 7:7 "=""#],
     );
 }
 
@@ -564,9 +559,7 @@ fn a_program_begins_somewhere() {
         r#"
 action main { wait 1 s }
 "#,
-        &[
-            r#"E0302 1:8 "main""#,
-        ],
+        &[r#"E0302 1:8 "main""#],
     );
 }
 
@@ -577,9 +570,6 @@ fn a_type_needs_a_value_somewhere() {
 action go(part: item, where: joints) { wait 1 s }
 sequence main { wait 1 s }
 "#,
-        &[
-            r#"E0106 1:17 "item""#,
-            r#"E0106 1:30 "joints""#,
-        ],
+        &[r#"E0106 1:17 "item""#, r#"E0106 1:30 "joints""#],
     );
 }

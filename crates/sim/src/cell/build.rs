@@ -354,14 +354,15 @@ impl Builder<'_> {
         };
         let give_n = contact.stiffness_n_per_m * GIVE_M;
         match &file.stop_force_n {
-            Some(force) if contact.stop_force_n > give_n => Err(self.error(
-                force,
-                format!(
-                    "bodies give way by {} mm at most, which at this stiffness is {give_n} N",
-                    GIVE_M / MM
-                ),
-            )),
-            _ => Ok(contact),
+            None => Ok(ContactSpec { stop_force_n: contact.stop_force_n.min(give_n), ..contact }),
+            Some(force) if contact.stop_force_n > give_n => {
+                let give_mm = GIVE_M / MM;
+                let message = format!(
+                    "bodies give way by {give_mm} mm at most, which at this stiffness is {give_n} N"
+                );
+                Err(self.error(force, message))
+            }
+            Some(_) => Ok(contact),
         }
     }
 

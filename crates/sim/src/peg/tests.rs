@@ -134,6 +134,16 @@ fn a_tilt_beyond_the_wedging_angle_is_stuck_at_the_computed_depth() {
 }
 
 #[test]
+fn a_peg_that_is_too_thick_is_stuck_in_the_chamfer() {
+    let thick = Fit { peg_radius_mm: 10.3, ..FIT };
+    // The rim, half a millimetre over the end, meets the cone where that is 10.3 mm wide.
+    assert_eq!(thick.contact(&upright(0.0, 1.29)).stage, Stage::Free);
+    let contact = thick.contact(&upright(0.0, 1.4));
+    assert_eq!(contact.stage, Stage::Wedged);
+    assert!((contact.axial_n - 50.0 * 0.1).abs() < 1e-6, "{contact:?}");
+}
+
+#[test]
 fn without_friction_nothing_wedges() {
     let slippery = Fit { friction: 0.0, ..FIT };
     let contact = slippery.contact(&tilted(0.06, 10.0));
@@ -158,7 +168,8 @@ fn force_never_jumps_on_the_way_in() {
             let force = contact.axial_n;
             // Leaving the chamfer the slope gives way to the wall: the one jump, downwards.
             if let Some(last) = before {
-                assert!(force < last + 1.1, "{last} N to {force} N at {tip_mm:?} {contact:?}");
+                let most = if contact.stage == Stage::Face { 1.001 } else { 0.4 };
+                assert!(force < last + most, "{last} N to {force} N at {tip_mm:?} {contact:?}");
             }
             before = Some(force);
         }

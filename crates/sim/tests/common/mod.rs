@@ -6,15 +6,15 @@ use obverse_geometry::{Axis, Frame, JointConfiguration, Pose};
 use obverse_sim::{Cell, Sim};
 use obverse_workcell::{Goal, Motion, Path, Speed, ToolId, Workcell};
 
-pub fn peg_in_hole() -> Cell {
+pub(crate) fn peg_in_hole() -> Cell {
     Cell::parse(include_str!("../../../../programs/peg_in_hole.toml")).expect("peg_in_hole.toml")
 }
 
-pub fn bench_cell() -> Cell {
+pub(crate) fn bench_cell() -> Cell {
     Cell::parse(include_str!("../../../../programs/bench_cell.toml")).expect("bench_cell.toml")
 }
 
-pub fn by_joints(joints: JointConfiguration) -> Motion {
+pub(crate) fn by_joints(joints: JointConfiguration) -> Motion {
     Motion {
         goal: Goal::Joints(joints),
         path: Path::Joint,
@@ -24,16 +24,16 @@ pub fn by_joints(joints: JointConfiguration) -> Motion {
     }
 }
 
-pub fn by_line(joints: JointConfiguration) -> Motion {
+pub(crate) fn by_line(joints: JointConfiguration) -> Motion {
     Motion { path: Path::Linear, ..by_joints(joints) }
 }
 
-pub fn to_pose(pose: Pose, path: Path) -> Motion {
+pub(crate) fn to_pose(pose: Pose, path: Path) -> Motion {
     Motion { goal: Goal::Pose(pose), path, ..by_joints(JointConfiguration::ZERO) }
 }
 
 /// Along the tool's z from `from`, stopping at a force.
-pub fn push(from: JointConfiguration, distance_m: f64, limit_n: f64) -> Motion {
+pub(crate) fn push(from: JointConfiguration, distance_m: f64, limit_n: f64) -> Motion {
     Motion {
         goal: Goal::Displaced { from, distance_m, axis: Axis::PlusZ, frame: Frame::Tcp },
         path: Path::Linear,
@@ -44,19 +44,19 @@ pub fn push(from: JointConfiguration, distance_m: f64, limit_n: f64) -> Motion {
 }
 
 /// Along the tool's z from `from`, without a guard.
-pub fn advance(from: JointConfiguration, distance_m: f64) -> Motion {
+pub(crate) fn advance(from: JointConfiguration, distance_m: f64) -> Motion {
     Motion { force_limit_n: None, ..push(from, distance_m, 1.0) }
 }
 
 /// Everything about a workcell, commanded or not, as bits.
-pub fn world_bits(sim: &Sim) -> Vec<u64> {
+pub(crate) fn world_bits(sim: &Sim) -> Vec<u64> {
     let mut bits = Vec::new();
     sim.world_state(&mut |word| bits.push(word));
     bits
 }
 
 /// What a program can command, as bits.
-pub fn commanded_bits(sim: &Sim) -> Vec<u64> {
+pub(crate) fn commanded_bits(sim: &Sim) -> Vec<u64> {
     let mut bits = Vec::new();
     sim.commanded_state(&mut |word| bits.push(word));
     bits

@@ -155,7 +155,7 @@ impl<'p> Interpreter<'p, '_> {
         }
         match then {
             Continuation::Action => {
-                site.rounds += 2;
+                site.rounds += 1;
                 None
             }
             Continuation::Sequence => {
