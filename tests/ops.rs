@@ -6,37 +6,18 @@ mod contract;
 
 use obverse_isa::{Opcode, for_each_op};
 use std::collections::BTreeSet;
-use std::path::{Path, PathBuf};
 
-fn folder() -> PathBuf {
-    Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/ops")
-}
+const FOLDER: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/ops");
 
 fn holds(opcode: Opcode) {
     let row = opcode.info();
-    let path = folder().join(row.mnemonic).with_extension_added();
-    let text = std::fs::read_to_string(&path).unwrap_or_else(|error| {
-        panic!(
-            "`{}` has no contract: write tests/ops/{}.obvasm with what is before, after and back \
-             ({error})",
-            row.mnemonic, row.mnemonic
-        )
+    let name = format!("{}.obvasm", row.mnemonic);
+    let text = std::fs::read_to_string(format!("{FOLDER}/{name}")).unwrap_or_else(|error| {
+        panic!("write tests/ops/{name} with what is before, after and back: {error}")
     });
-    let contract = contract::parse(&text).unwrap_or_else(|error| panic!("{error}"));
-    if let Err(broken) = contract::run::holds(row, &contract) {
-        panic!("tests/ops/{}.obvasm: {broken}", row.mnemonic);
-    }
-}
-
-/// A mnemonic has dots of its own, so that `with_extension` would cut it.
-trait WithExtensionAdded {
-    fn with_extension_added(self) -> PathBuf;
-}
-
-impl WithExtensionAdded for PathBuf {
-    fn with_extension_added(mut self) -> PathBuf {
-        self.as_mut_os_string().push(".obvasm");
-        self
+    let held = contract::parse(&text).and_then(|contract| contract::run::holds(row, &contract));
+    if let Err(broken) = held {
+        panic!("tests/ops/{name}: {broken}");
     }
 }
 
@@ -60,7 +41,7 @@ for_each_op!(contracts);
 
 #[test]
 fn every_file_is_the_contract_of_a_row() {
-    let files: BTreeSet<String> = std::fs::read_dir(folder())
+    let files: BTreeSet<String> = std::fs::read_dir(FOLDER)
         .expect("tests/ops can be read")
         .map(|entry| entry.expect("tests/ops can be read").file_name().into_string())
         .map(|name| name.expect("names are text"))

@@ -19,8 +19,9 @@
 //! the start, and `enter` and `halt` are put around it. It runs, a step at a time, up to the
 //! instruction under `before:`, makes one step more, and then one back.
 //!
-//! - `given:` sets the workcell up: `joints`, `output N`; `stopped = 0.5` stops the act half way; and
-//!   `input N`, `force`, `draw N` only say what the workcell will answer.
+//! - `given:` sets the workcell up: `joints`, `output N`, and what it will answer: `input N`, `force`,
+//!   `draw N`. `stopped = 0.5` stops the act half way, `in_the_way = 0.5` is there for a motion with
+//!   a force limit to meet. With `visit = 2` it is the second time that control comes there.
 //! - `before:` is what its clauses say, and may say little.
 //! - `after:` is *exactly* the state before with what the clauses change, a step further. `tape +=`
 //!   is what was recorded; `commands` is what the workcell was told, nothing if it is left out;
@@ -38,6 +39,7 @@
 //! `draws`, `blocks`, `pending`. A `;;` line that begins with no such word goes on with the one
 //! above.
 
+mod cell;
 pub(crate) mod picture;
 pub(crate) mod run;
 
@@ -169,7 +171,7 @@ fn read_case(header: &[&str], lines: &[&str]) -> Result<Case, String> {
         next += u32::from(is_instruction);
         asm.push(line);
     }
-    if is_body {
+    if is_body && !lines.iter().any(|line| line.trim() == "halt") {
         asm.push("    halt");
     }
     case.source = asm.join("\n");
@@ -193,13 +195,16 @@ fn say(case: &mut Case, words: &str, pc: u32) -> Result<(), String> {
         "after" => case.after = clauses,
         _ => {
             let rest = word.strip_prefix("back").ok_or("no such word")?;
-            let steps = rest.strip_prefix(" in ").and_then(|rest| rest.strip_suffix(" steps"));
-            let steps = match (steps, rest) {
-                (Some(steps), _) => steps.parse().map_err(|_| "the number of steps is none")?,
-                (None, "" | ", with") => 1,
-                _ => return Err("it is `back`, `back, with` or `back in N steps`".to_owned()),
+            let (count, may_differ) = match rest.strip_suffix(", with") {
+                Some(count) => (count, true),
+                None => (rest, false),
             };
-            case.back.push(Back { steps, may_differ: rest == ", with", clauses });
+            let steps = match count.strip_prefix(" in ").and_then(|n| n.strip_suffix(" steps")) {
+                Some(steps) => steps.parse().map_err(|_| "the number of steps is none")?,
+                None if count.is_empty() => 1,
+                None => return Err("it is `back[ in N steps][, with]:`".to_owned()),
+            };
+            case.back.push(Back { steps, may_differ, clauses });
         }
     }
     Ok(())

@@ -4,8 +4,9 @@ use obverse_syntax::codes::Code;
 use obverse_syntax::diagnostic::{Diagnostic, Severity};
 use obverse_syntax::span::Span;
 
-/// More than these are not kept: a text with so many is not meant as a program.
-const MAX_DIAGNOSTICS: usize = 200;
+/// More errors than these are not kept, nor more warnings: a text with so many is not meant as a
+/// program.
+const MAX_KEPT: usize = 200;
 
 /// How many words are compared in search of the one that was meant, in all of a program.
 const MAX_COMPARED: usize = 100_000;
@@ -13,8 +14,8 @@ const MAX_COMPARED: usize = 100_000;
 /// What has been found so far.
 #[derive(Debug)]
 pub(crate) struct Reports {
-    diagnostics: Vec<Diagnostic>,
-    has_errors: bool,
+    errors: Vec<Diagnostic>,
+    warnings: Vec<Diagnostic>,
     is_whole: bool,
     compared: usize,
 }
@@ -35,7 +36,7 @@ const OF_ABSENCE: [Code; 9] = [
 impl Reports {
     /// Nothing yet. If the tree is not whole, what its missing parts may have caused is not kept.
     pub(crate) fn new(is_whole: bool) -> Self {
-        Self { diagnostics: Vec::new(), has_errors: false, is_whole, compared: 0 }
+        Self { errors: Vec::new(), warnings: Vec::new(), is_whole, compared: 0 }
     }
 
     /// Keep a diagnostic.
@@ -44,9 +45,9 @@ impl Reports {
         if !self.is_whole && (is_warning || OF_ABSENCE.contains(&diagnostic.code)) {
             return;
         }
-        self.has_errors |= diagnostic.severity == Severity::Error;
-        if self.diagnostics.len() < MAX_DIAGNOSTICS {
-            self.diagnostics.push(diagnostic);
+        let kept = if is_warning { &mut self.warnings } else { &mut self.errors };
+        if kept.len() < MAX_KEPT {
+            kept.push(diagnostic);
         }
     }
 
@@ -57,7 +58,7 @@ impl Reports {
 
     /// Whether the program cannot be compiled.
     pub(crate) fn has_errors(&self) -> bool {
-        self.has_errors
+        !self.errors.is_empty()
     }
 
     /// The one of `words` that was probably meant by `word`.
@@ -66,7 +67,7 @@ impl Reports {
         word: &str,
         words: impl Iterator<Item = &'w str>,
     ) -> Option<&'w str> {
-        if self.diagnostics.len() >= MAX_DIAGNOSTICS {
+        if self.errors.len() >= MAX_KEPT {
             return None;
         }
         let budget = MAX_COMPARED.saturating_sub(self.compared);
@@ -76,7 +77,9 @@ impl Reports {
 
     /// All of them.
     pub(crate) fn into_diagnostics(self) -> Vec<Diagnostic> {
-        self.diagnostics
+        let mut all = self.errors;
+        all.extend(self.warnings);
+        all
     }
 }
 

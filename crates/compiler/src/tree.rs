@@ -7,7 +7,7 @@ use crate::types::ValueType;
 use obverse_bytecode::{FunctionKind, Module, Variable};
 use obverse_isa::{
     Axis, Bit, CheckpointId, CounterId, ErrorId, Frame, FunctionId, GlobalId, Instr, ItemId,
-    JointsId, KeyframeId, Level, LocalId, Path, ReasonId, Setting, SlotId, SpeedId, ToolId,
+    JointsId, KeyframeId, Level, LocalId, Path, ReasonId, Setting, SlotId, SpeedId, ToolId, Type,
 };
 use obverse_syntax::span::Span;
 
@@ -53,6 +53,9 @@ pub(crate) struct Function {
     pub(crate) body: Body,
 }
 
+/// How many words a frame has at the most.
+pub(crate) const MAX_SLOTS: usize = 256;
+
 /// What a frame holds.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Layout {
@@ -64,6 +67,29 @@ pub(crate) struct Layout {
     pub(crate) counters: u8,
     /// The names of remembered positions.
     pub(crate) slots: Vec<String>,
+}
+
+impl Layout {
+    /// How many words the frame has: one a local, three a counter.
+    pub(crate) fn slots(&self) -> usize {
+        self.locals.len() + 3 * usize::from(self.counters)
+    }
+
+    /// A further local; none if there is no room.
+    pub(crate) fn add(&mut self, name: &str, of_type: Type) -> Option<LocalId> {
+        let local = u8::try_from(self.locals.len()).ok().filter(|_| self.slots() < MAX_SLOTS)?;
+        self.locals.push(Variable { name: name.to_owned(), of_type });
+        Some(LocalId(local))
+    }
+
+    /// A further local whose name begins with `$`; where another has that name already, or it is
+    /// empty, its index makes it different.
+    pub(crate) fn add_hidden(&mut self, name: &str, of_type: Type) -> Option<LocalId> {
+        let plain = format!("${name}");
+        let is_taken = name.is_empty() || self.locals.iter().any(|local| local.name == plain);
+        let index = if is_taken { self.locals.len().to_string() } else { String::new() };
+        self.add(&format!("{plain}{index}"), of_type)
+    }
 }
 
 /// What a function does.

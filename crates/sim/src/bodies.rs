@@ -6,7 +6,7 @@
 use crate::cell::{Cell, Part, ToolSpec};
 use crate::collision::{Body, Obstacle};
 use crate::gripper::Inventory;
-use crate::kinematics::{LinkFrames, links};
+use crate::kinematics::links;
 use crate::line::Line;
 use crate::robot;
 use crate::route::Route;

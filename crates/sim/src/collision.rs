@@ -170,20 +170,20 @@ impl Obstacle {
     pub(crate) fn at_least_mm(&self, body: &Body, carrier: &Pose) -> f64 {
         let middle = carrier.rotation * body.local.translation_m + carrier.translation_m;
         let Core::Segment(bar) = body.core else {
-            return self.from_box_mm(&middle) - body.radius_mm;
+            return self.outside_mm(&middle) - body.radius_mm;
         };
         // A bar is long: three balls in a row, each around a third of it.
         let third_m = Vector3::new(bar.b.x, bar.b.y, bar.b.z) * (2.0 / 3.0 / MM);
         let aside = carrier.rotation * (body.local.rotation * third_m);
         let nearest_mm = self
-            .from_box_mm(&middle)
-            .min(self.from_box_mm(&(middle + aside)))
-            .min(self.from_box_mm(&(middle - aside)));
+            .outside_mm(&middle)
+            .min(self.outside_mm(&(middle + aside)))
+            .min(self.outside_mm(&(middle - aside)));
         nearest_mm - body.margin_mm - (body.radius_mm - body.margin_mm) / 3.0
     }
 
     /// The distance of a point from the box around the obstacle.
-    fn from_box_mm(&self, point_m: &Vector3<f64>) -> f64 {
+    fn outside_mm(&self, point_m: &Vector3<f64>) -> f64 {
         let inside = (self.to_box.rotation * point_m + self.to_box.translation_m) * MM;
         (inside.abs() - self.half_box_mm).sup(&Vector3::zeros()).norm()
     }

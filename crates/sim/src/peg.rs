@@ -30,8 +30,8 @@
 //! rigid parts*, J. Dyn. Sys. Meas. Control 104, 1982, whose stages these are). With friction `m`:
 //!
 //! - *face*: the end lands beside the hole; what the arm goes on is pressed: `F = K p`.
-//! - *chamfer*: the rim slides down the cone and the peg is pushed aside by `d`. From the balance on
-//!   a slope of 45 degrees, `Fx = Kx d` and `Fz = Fx (1 + m) / (1 - m)`.
+//! - *chamfer*: the rim slides down the cone and the peg is pushed aside by `d`. From the balance
+//!   on a slope of 45 degrees, `Fx = Kx d` and `Fz = Fx (1 + m) / (1 - m)`.
 //! - *one point*: the rim or the throat pushes the peg aside by `d`: `Fz = m Kx d`.
 //! - *two points*: the tilt exceeds what fits at this depth by `a`, and is righted by a couple
 //!   `Kt a = f1 h` of throat and wall, `f1 - f2 = Fx` and `Fz = m (f1 + f2)`. The moments of the
@@ -49,8 +49,8 @@ use nalgebra::{Vector2, Vector3};
 const ROUNDING_MM: f64 = 1e-7;
 /// How often the peg is pushed off what it overlaps before the rest is left.
 const PUSHES_MAX: u32 = 32;
-/// A point of a rim is known well enough within this angle: its distance is then within a rounding.
-const ANGLE_RAD: f64 = 1e-8;
+/// A step of Newton's method within this is the last: the next would be about its square.
+const LAST_STEP_RAD: f64 = 1e-4;
 /// Steps of Newton's method; it starts within a thousandth of the result.
 const NEWTON_STEPS: u32 = 6;
 
@@ -308,8 +308,11 @@ impl Fit {
             }
             stage = at;
             let turned = rim.1.perp(&throat.1);
-            push -= if turned.abs() > 1e-6 {
-                (across(&rim.1) * throat.0 - across(&throat.1) * rim.0) / turned
+            let step = across(&rim.1) * throat.0 - across(&throat.1) * rim.0;
+            // One of the two is touched already, and inside it the place is within the clearance.
+            let farthest = 2.0 * (self.hole_radius_mm - self.peg_radius_mm).abs();
+            push -= if step.norm() < farthest * turned.abs() {
+                step / turned
             } else if rim.0 > throat.0 {
                 rim.1 * rim.0
             } else {
@@ -402,11 +405,12 @@ struct Turn {
 }
 
 impl Turn {
-    /// Turned by a small angle.
+    /// Turned by a small angle: exactly a rotation, by the angle up to its cube.
     fn by(self, angle: f64) -> Self {
-        let (cos, sin) = (self.cos - self.sin * angle, self.sin + self.cos * angle);
-        let length = (cos * cos + sin * sin).sqrt();
-        Self { cos: cos / length, sin: sin / length }
+        let half = 0.5 * angle;
+        let shrink = 1.0 / (1.0 + half * half);
+        let (cos, sin) = ((1.0 - half * half) * shrink, angle * shrink);
+        Self { cos: self.cos * cos - self.sin * sin, sin: self.sin * cos + self.cos * sin }
     }
 }
 
@@ -452,7 +456,7 @@ impl Ellipse {
             }
             let angle = (-rise / bend).clamp(-0.5, 0.5);
             turn = turn.by(angle);
-            if angle.abs() < ANGLE_RAD {
+            if angle.abs() < LAST_STEP_RAD {
                 break;
             }
         }
@@ -465,7 +469,8 @@ impl Ellipse {
         let length = (x * x + y * y).sqrt();
         let end = |side: f64| if side < 0.0 { -1.0 } else { 1.0 };
         if length > stretch.abs() {
-            Turn { cos: x / length, sin: y / length }
+            let scale = 1.0 / length;
+            Turn { cos: x * scale, sin: y * scale }
         } else if stretch > 0.0 {
             Turn { cos: 0.0, sin: end(y) }
         } else {

@@ -2,10 +2,11 @@
 //!
 //! Every pair of a moving body and a standing one is looked at only when it could matter: from a
 //! distance and an upper bound on the way of the body follows a fraction of the route before which
-//! the two cannot meet (conservative advancement, so that nothing is ever stepped over). Bodies that
-//! touch are followed in small steps, with the samples of the force sensor in between. A contact
-//! force follows from how deep two bodies are pressed, and so from the place alone: going back the
-//! same way finds the same forces. Knows nothing of commands and of what follows from a stop.
+//! the two cannot meet (conservative advancement, so that nothing is ever stepped over). Bodies
+//! that touch are followed in small steps, with the samples of the force sensor in between. A
+//! contact force follows from how deep two bodies are pressed, and so from the place alone: going
+//! back the same way finds the same forces. Knows nothing of commands and of what follows from a
+//! stop.
 
 use crate::bodies::{Mover, Moving, Place, moving, resting};
 use crate::cell::ToolSpec;
@@ -328,3 +329,6 @@ impl<'a> Sweep<'a> {
         Outcome { fraction: high, end, peak_n: reader.peak_n(), force_n }
     }
 }
+
+#[cfg(test)]
+mod tests;

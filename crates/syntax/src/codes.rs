@@ -196,188 +196,196 @@ codes! {
 
     // E01xx: names.
     UnknownName "E0101" "a name that nothing has"
-        why "Every name is declared once in the file: joint configurations, items, I/O \
-             operations, errors, \
-             advanced moves and sequences at its top, in any order; variables before they are \
-             used. A \
-             declaration with a mistake of its own still counts."
+        why "Every name is declared once in the file: joint configurations, items, I/O operations, \
+             errors, advanced moves and sequences at its top, in any order; variables before they \
+             are used. A declaration with a mistake of its own still counts."
         wrong "sequence main { move to start }"
-        right "joints start = [0, -90, 90, -90, -90, 0] deg sequence main { move to start }"
+        right "joints start = [0, -90, 90, -90, -90, 0] deg\n\
+               sequence main { move to start }"
     DuplicateName "E0102" "a name that is given twice"
         why "All declarations share one set of names, and a name means one thing wherever it is \
-             seen: \
-             a variable cannot have the name of a sequence, nor of a variable around it. Blocks \
-             beside \
-             one another may use the same name."
-        wrong "var count = 0 sequence main { var count = 1 if count > 0 { wait 1 s } }"
+             seen: a variable cannot have the name of a sequence, nor of a variable around it. \
+             Blocks beside one another may use the same name."
+        wrong "var count = 0\n\
+               sequence main { var count = 1 if count > 0 { wait 1 s } }"
         right "sequence main { var count = 1 if count > 0 { wait 1 s } }"
     WrongKind "E0103" "a name of another kind of thing"
         why "`move to` takes a joint configuration, a keyframe or a position; `io` an I/O \
-             operation; \
-             `advance` an advanced move; `call` a sequence or an action; `throw` an error."
-        wrong "io open { set 0 low } sequence main { call open }"
-        right "io open { set 0 low } sequence main { io open }"
+             operation; `advance` an advanced move; `call` a sequence or an action; `throw` an \
+             error."
+        wrong "io open { set 0 low }\n\
+               sequence main { call open }"
+        right "io open { set 0 low }\n\
+               sequence main { io open }"
     UnknownKeyframe "E0104" "an item without this keyframe"
         why "`move to part.grasp` needs a keyframe `grasp` of that item. Where `part` is a \
-             parameter, \
-             every item that is passed needs each keyframe that the sequence moves to, itself or \
-             through the sequences it passes the item on to."
-        wrong "item peg { keyframe above = [0, 0, 50] mm } sequence main { move to peg.grasp }"
-        right "item peg { keyframe grasp = [0, 0, 20] mm } sequence main { move to peg.grasp }"
+             parameter, every item that is passed needs each keyframe that the sequence moves to, \
+             itself or through the sequences it passes the item on to."
+        wrong "item peg { keyframe above = [0, 0, 50] mm }\n\
+               sequence main { move to peg.grasp }"
+        right "item peg { keyframe grasp = [0, 0, 20] mm }\n\
+               sequence main { move to peg.grasp }"
     UnknownFunction "E0105" "a function that there is not"
         why "The functions of expressions are abs, min, max, sqrt, int, real and random. A \
-             sequence has \
-             no value; it is called by a statement of its own, `call NAME(..)`."
-        wrong "var gap = square(2)  sequence main { if gap > 3 { wait 1 s } }"
-        right "var gap = 2 * 2  sequence main { if gap > 3 { wait 1 s } }"
+             sequence has no value; it is called by a statement of its own, `call NAME(..)`."
+        wrong "var gap = square(2)\n\
+               sequence main { if gap > 3 { wait 1 s } }"
+        right "var gap = 2 * 2\n\
+               sequence main { if gap > 3 { wait 1 s } }"
     UnknownType "E0106" "a type that there is not"
-        why "The types are int, number, length, angle, time, force, speed, bool, joints and \
-             item. A \
-             number is a real without a unit."
-        wrong "action lift(height: metres) { move height up in base } sequence main { call \
-               lift(5 mm) }"
-        right "action lift(height: length) { move height up in base } sequence main { call \
-               lift(5 mm) }"
+        why "The types are int, number, length, angle, time, force, speed, bool, joints and item. \
+             A number is a real without a unit."
+        wrong "action lift(height: metres) { move height up in base }\n\
+               sequence main { call lift(5 mm) }"
+        right "action lift(height: length) { move height up in base }\n\
+               sequence main { call lift(5 mm) }"
     UnknownCheckpoint "E0107" "a checkpoint that is nowhere set"
         why "A recovery that reverses to a checkpoint needs a statement `checkpoint NAME` \
-             somewhere in \
-             the program; otherwise it could only give up."
-        wrong "error jam { recover by reversing to checkpoint ready } sequence main { throw jam }"
-        right "error jam { recover by reversing to checkpoint ready } sequence main { checkpoint \
-               ready throw jam }"
+             somewhere in the program; otherwise it could only give up."
+        wrong "error jam { recover by reversing to checkpoint ready }\n\
+               sequence main { throw jam }"
+        right "error jam { recover by reversing to checkpoint ready }\n\
+               sequence main { checkpoint ready throw jam }"
 
     // E02xx: types and units.
     TypeMismatch "E0201" "a value of another type"
         why "Integers, reals, truth values, joint configurations and items do not stand for one \
-             another. \
-             An integer that is written out stands for a number where one is needed; any other is \
-             turned into one by `real(n)`, and a number into an integer by `int(x)`."
+             another. An integer that is written out stands for a number where one is needed; any \
+             other is turned into one by `real(n)`, and a number into an integer by `int(x)`."
         wrong "sequence main { if 1 { wait 1 s } }"
         right "sequence main { if 1 > 0 { wait 1 s } }"
     UnitMismatch "E0202" "a value of another unit"
-        why "Values are added, compared and assigned only where they measure the same: a length \
-             is never \
-             compared with a time. Units of one kind convert: mm and m, deg and rad. Products and \
-             quotients combine: 10 mm / 2 s is a speed."
+        why "Values are added, compared and assigned only where they measure the same: a length is \
+             never compared with a time. Units of one kind convert: mm and m, deg and rad. \
+             Products and quotients combine: 10 mm / 2 s is a speed."
         wrong "sequence main { wait 3 mm }"
         right "sequence main { wait 3 s }"
     MissingUnit "E0203" "a number without a unit"
-        why "A length, angle, time, force or speed is written with its unit, also when it is \
-             zero; there \
-             is no default, so that 0.3 m and 0.3 mm cannot be confused."
+        why "A length, angle, time, force or speed is written with its unit, also when it is zero; \
+             there is no default, so that 0.3 m and 0.3 mm cannot be confused."
         wrong "sequence main { wait 3 }"
         right "sequence main { wait 3 s }"
     DoubleUnit "E0204" "a unit within and after the bracket"
-        why "The unit after a bracket is that of each number in it, so that the numbers have \
-             none of \
-             their own. Without a unit after the bracket each has its own."
-        wrong "joints home = [0 deg, -90, 90, -90, -90, 0] deg sequence main { move to home }"
-        right "joints home = [0, -90, 90, -90, -90, 0] deg sequence main { move to home }"
+        why "The unit after a bracket is that of each number in it, so that the numbers have none \
+             of their own. Without a unit after the bracket each has its own."
+        wrong "joints home = [0 deg, -90, 90, -90, -90, 0] deg\n\
+               sequence main { move to home }"
+        right "joints home = [0, -90, 90, -90, -90, 0] deg\n\
+               sequence main { move to home }"
     VectorLength "E0205" "a vector with too many or too few numbers"
         why "A joint configuration has six numbers, from the base to the wrist; the position of a \
              keyframe has three, and so has its rotation (the axis times the angle)."
-        wrong "joints home = [0, -90, 90] deg sequence main { move to home }"
-        right "joints home = [0, -90, 90, -90, -90, 0] deg sequence main { move to home }"
+        wrong "joints home = [0, -90, 90] deg\n\
+               sequence main { move to home }"
+        right "joints home = [0, -90, 90, -90, -90, 0] deg\n\
+               sequence main { move to home }"
     NotConstant "E0206" "a value that is not known before the program runs"
         why "The first values of the program's variables, joint configurations, keyframes and the \
              policies of errors are fixed when the program is compiled: numbers, units and \
-             arithmetic, \
-             but no variables and no readings."
-        wrong "var first = force sequence main { if first > 1 N { wait 1 s } }"
+             arithmetic, but no variables and no readings."
+        wrong "var first = force\n\
+               sequence main { if first > 1 N { wait 1 s } }"
         right "sequence main { var first = force if first > 1 N { wait 1 s } }"
     DivisionByZero "E0207" "a division by zero"
         why "An integer cannot be divided by zero, nor is there a remainder by zero. Where the \
-             divisor is \
-             a variable, the machine traps before the statement has changed anything."
-        wrong "var part = 1 / 0 sequence main { if part > 0 { wait 1 s } }"
-        right "var part = 1 / 2.0 sequence main { if part > 0 { wait 1 s } }"
+             divisor is a variable, the machine traps before the statement has changed anything."
+        wrong "var part = 1 / 0\n\
+               sequence main { if part > 0 { wait 1 s } }"
+        right "var part = 1 / 2.0\n\
+               sequence main { if part > 0 { wait 1 s } }"
     ArgumentCount "E0208" "too many or too few arguments"
         why "A call gives each parameter its value, in the order of their declaration."
-        wrong "action lift(height: length) { move height up } sequence main { call lift }"
-        right "action lift(height: length) { move height up } sequence main { call lift(5 mm) }"
+        wrong "action lift(height: length) { move height up }\n\
+               sequence main { call lift }"
+        right "action lift(height: length) { move height up }\n\
+               sequence main { call lift(5 mm) }"
     NoSquareRoot "E0209" "a unit without a square root"
         why "The square root halves each unit: that of an area is a length, but that of a length \
-             has no \
-             unit."
-        wrong "var side = sqrt(4 mm) sequence main { move side up }"
-        right "var side = sqrt(4 mm * 4 mm) sequence main { move side up }"
+             has no unit."
+        wrong "var side = sqrt(4 mm)\n\
+               sequence main { move side up }"
+        right "var side = sqrt(4 mm * 4 mm)\n\
+               sequence main { move side up }"
     OutOfRange "E0210" "a value that cannot be meant"
-        why "A time to wait is not negative, a move is tried a limited number of times, values \
-             and units \
-             are finite, and a workcell has no more than 65536 lines."
+        why "A time to wait is not negative, a move is tried a limited number of times, values and \
+             units are finite, and a workcell has no more than 65536 lines."
         wrong "sequence main { wait -1 s }"
         right "sequence main { wait 1 s }"
     ItemVariable "E0211" "a variable that would hold an item"
         why "Which keyframes an item has is checked before the program runs. Therefore only a \
-             parameter \
-             stands for an item, and it is never assigned."
-        wrong "item peg { keyframe grasp = [0, 0, 20] mm } sequence main { var part = peg move \
-               to part.grasp }"
-        right "item peg { keyframe grasp = [0, 0, 20] mm } sequence main { call pick(peg) } \
+             parameter stands for an item, and it is never assigned."
+        wrong "item peg { keyframe grasp = [0, 0, 20] mm }\n\
+               sequence main { var part = peg move to part.grasp }"
+        right "item peg { keyframe grasp = [0, 0, 20] mm }\n\
+               sequence main { call pick(peg) }\n\
                action pick(part: item) { move to part.grasp }"
 
     // E03xx: statements, structure and errors.
     NoMain "E0301" "a program without a main sequence"
         why "A program begins with its sequence `main`, or, where none has that name, with the \
-             last \
-             sequence that has no parameters. Actions are only called."
-        wrong "joints home = [0, -90, 90, -90, -90, 0] deg action go { move to home }"
-        right "joints home = [0, -90, 90, -90, -90, 0] deg sequence go { move to home }"
+             last sequence that has no parameters. Actions are only called."
+        wrong "joints home = [0, -90, 90, -90, -90, 0] deg\n\
+               action go { move to home }"
+        right "joints home = [0, -90, 90, -90, -90, 0] deg\n\
+               sequence go { move to home }"
     MainParameters "E0302" "a main sequence that needs arguments"
         why "Nobody calls the sequence `main`, so that nobody could give it arguments; and it is a \
              sequence, not an action."
         wrong "sequence main(height: length) { move height up }"
         right "sequence main { move 5 mm up }"
     DuplicateClause "E0303" "a clause that is written twice"
-        why "Each clause of an error or an advanced move, and `cell` in a file, is written at \
-             most once: \
-             which of two should hold would be a guess."
-        wrong "error jam { severity fatal severity warning } sequence main { throw jam }"
-        right "error jam { severity fatal } sequence main { throw jam }"
+        why "Each clause of an error or an advanced move, and `cell` in a file, is written at most \
+             once: which of two should hold would be a guess."
+        wrong "error jam { severity fatal severity warning }\n\
+               sequence main { throw jam }"
+        right "error jam { severity fatal }\n\
+               sequence main { throw jam }"
     MissingClause "E0304" "a clause that is needed"
-        why "An advanced move says how far it goes and which way: `distance 300 mm forward in tcp`."
-        wrong "advanced move insert { stop if force > 5 N } sequence main { advance insert }"
-        right "advanced move insert { distance 20 mm forward stop if force > 5 N } sequence main \
-               { advance insert }"
+        why "An advanced move says how far it goes and which way: `distance 300 mm forward in \
+             tcp`."
+        wrong "advanced move insert { stop if force > 5 N }\n\
+               sequence main { advance insert }"
+        right "advanced move insert { distance 20 mm forward stop if force > 5 N }\n\
+               sequence main { advance insert }"
     StopCondition "E0305" "a motion cannot be stopped by this"
         why "A guarded motion is stopped by the workcell itself, at the instant when the contact \
-             force \
-             exceeds a limit: `stop if force > 5 N`. How far it goes is its distance."
-        wrong "advanced move insert { distance 20 mm forward stop if holding } sequence main { \
-               advance insert }"
-        right "advanced move insert { distance 20 mm forward stop if force > 5 N } sequence main \
-               { advance insert }"
+             force exceeds a limit: `stop if force > 5 N`. How far it goes is its distance."
+        wrong "advanced move insert { distance 20 mm forward stop if holding }\n\
+               sequence main { advance insert }"
+        right "advanced move insert { distance 20 mm forward stop if force > 5 N }\n\
+               sequence main { advance insert }"
     BreakOutsideLoop "E0306" "a `break` without a loop"
         why "`break` leaves the innermost loop of the same sequence. `return` leaves the sequence."
         wrong "sequence main { break }"
         right "sequence main { return }"
     NotAssignable "E0307" "something that cannot be assigned"
         why "Variables and parameters can be assigned; the counter of a loop, an item and a \
-             declaration \
-             cannot. A counted loop knows its counter in both directions, since nothing else \
-             changes it."
+             declaration cannot. A counted loop knows its counter in both directions, since \
+             nothing else changes it."
         wrong "sequence main { for i from 0 to 9 { i = 3 } }"
         right "sequence main { var i = 0 while i < 10 { i += 3 } }"
     RecoveryParameters "E0308" "a recovery that needs arguments"
         why "A recovery is called where an error is responded to, and nothing there could be its \
              arguments."
-        wrong "error jam { recover using free } sequence free(by: length) { move by up } \
+        wrong "error jam { recover using free }\n\
+               sequence free(by: length) { move by up }\n\
                sequence main { throw jam }"
-        right "error jam { recover using free } sequence free { move 5 mm up } sequence main { \
-               throw jam }"
+        right "error jam { recover using free }\n\
+               sequence free { move 5 mm up }\n\
+               sequence main { throw jam }"
     ContradictoryError "E0309" "clauses of an error that exclude one another"
         why "A fatal error stops the program and a warning lets it go on, so that neither is \
-             recovered \
-             from. `otherwise using` names what is run when reversing has been given up; an \
-             error that \
-             is recovered from by a sequence has no use for a second one."
-        wrong "error jam { severity fatal then continue } sequence main { throw jam }"
-        right "error jam { severity warning } sequence main { throw jam }"
+             recovered from. `otherwise using` names what is run when reversing has been given up; \
+             an error that is recovered from by a sequence has no use for a second one."
+        wrong "error jam { severity fatal then continue }\n\
+               sequence main { throw jam }"
+        right "error jam { severity warning }\n\
+               sequence main { throw jam }"
     TooMany "E0310" "more than a module can hold"
-        why "A module has at most 65536 of each kind of thing, a sequence at most 256 variables \
-             (hidden \
-             ones among them), 255 parameters and 256 positions, a program at most four million \
-             instructions. Name a sequence for a part of it and call it."
+        why "A module has at most 65535 of each kind of thing and four million instructions; a \
+             sequence has room for 256 variables (hidden ones among them, and three for each loop \
+             counter), 255 parameters and 256 positions. Name a sequence for a part of it and call \
+             it."
         wrong ""
         right ""
     ExpressionTooLarge "E0311" "an expression that is too large"
@@ -386,64 +394,61 @@ codes! {
         wrong ""
         right ""
     MisplacedBehaviour "E0312" "a behaviour that cannot stand here"
-        why "`repeat with perturbation` tries a failed move again, so that it stands once, in \
-             `on failure`."
+        why "`repeat with perturbation` tries a failed move again, so that it stands once, in `on \
+             failure`."
         wrong "advanced move insert { distance 20 mm forward on success { repeat with \
-               perturbation 3 times } } \
+               perturbation 3 times } }\n\
                sequence main { advance insert }"
         right "advanced move insert { distance 20 mm forward on failure { repeat with \
-               perturbation 3 times } } \
+               perturbation 3 times } }\n\
                sequence main { advance insert }"
 
     // E04xx: reversal.
     NoNamedPosition "E0401" "the position named last is not known"
         why "`reversible always` takes a move back to the configuration that the program named \
-             last, \
-             without a record. That is known only where a `move to` a joint configuration comes \
-             before it on the \
-             same straight way, with no other motion, call or join of ways between them. Without \
-             `reversible always` a move goes back to where it was recorded to begin."
-        wrong "joints a = [0, -90, 90, -90, -90, 0] deg sequence main { move to a reversible \
-               always }"
-        right "joints a = [0, -90, 90, -90, -90, 0] deg joints b = [9, -90, 90, -90, -90, 0] deg \
+             last, without a record. That is known only where a `move to` a joint configuration \
+             comes before it on the same straight way, with no other motion, call or join of ways \
+             between them. Without `reversible always` a move goes back to where it was recorded \
+             to begin."
+        wrong "joints a = [0, -90, 90, -90, -90, 0] deg\n\
+               sequence main { move to a reversible always }"
+        right "joints a = [0, -90, 90, -90, -90, 0] deg\n\
+               joints b = [9, -90, 90, -90, -90, 0] deg\n\
                sequence main { move to a move to b reversible always }"
     LeavesReversedBlock "E0402" "a way out of a block that is reversed as one"
         why "A block that is skipped or replaced in reverse is passed over from its end to its \
-             beginning; \
-             a way out of its middle would have no such end."
+             beginning; a way out of its middle would have no such end."
         wrong "sequence main { skip in reverse { return } }"
         right "sequence main { skip in reverse { wait 1 s } return }"
     ReadingInAssertion "E0403" "an assertion that reads the outside"
         why "What follows `ending when` and `entered when` is evaluated in both directions and \
-             must say \
-             the same in both. A reading of the workcell or a random draw need not. Store it in a \
-             variable and assert that."
+             must say the same in both. A reading of the workcell or a random draw need not. Store \
+             it in a variable and assert that."
         wrong "sequence main { if 1 > 0 { wait 1 s } ending when input 3 }"
         right "sequence main { var part = input 3 if part { wait 1 s } ending when part }"
     UselessAssertion "E0404" "an assertion where no ways join"
-        why "`ending when` and `entered when` tell two ways apart that come together. Where one \
-             of them \
-             leaves for good there is nothing to tell apart, and no record would be made either."
+        why "`ending when` and `entered when` tell two ways apart that come together. Where one of \
+             them leaves for good there is nothing to tell apart, and no record would be made \
+             either."
         wrong "sequence main { var n = 1 if n > 0 { return } ending when n > 0 }"
         right "sequence main { var n = 1 if n > 0 { return } }"
     OuterVariableInReverse "E0405" "a variable of the sequence in a block that replaces another"
         why "The block after `in reverse` is run on its own while the program goes backwards: it \
-             has \
-             its own variables, and those of the whole program, but not those of the sequence it \
-             stands \
-             in."
+             has its own variables, and those of the whole program, but not those of the sequence \
+             it stands in."
         wrong "sequence main { var n = 1 s do { wait 2 s } in reverse { wait n } }"
-        right "var n = 1 s sequence main { do { wait 2 s } in reverse { wait n } }"
+        right "var n = 1 s\n\
+               sequence main { do { wait 2 s } in reverse { wait n } }"
     ErrorInReverse "E0406" "a block that replaces another and can fail"
-        why "The block after `in reverse` is run while the program goes backwards, where no \
-             error is \
-             responded to. Neither it nor what it calls may throw."
-        wrong "error jam { then stop } sequence main { do { wait 2 s } in reverse { throw jam } }"
-        right "error jam { then stop } sequence main { do { throw jam } in reverse { wait 1 s } }"
+        why "The block after `in reverse` is run while the program goes backwards, where no error \
+             is responded to. Neither it nor what it calls may throw."
+        wrong "error jam { then stop }\n\
+               sequence main { do { wait 2 s } in reverse { throw jam } }"
+        right "error jam { then stop }\n\
+               sequence main { do { throw jam } in reverse { wait 1 s } }"
     BarrierInReversedBlock "E0407" "a barrier in a block that has a reverse of its own"
-        why "A barrier, and a block that is irreversible, cannot be passed backwards; a block \
-             that is \
-             skipped or replaced in reverse is passed. Neither it nor what it calls may contain \
+        why "A barrier, and a block that is irreversible, cannot be passed backwards; a block that \
+             is skipped or replaced in reverse is passed. Neither it nor what it calls may contain \
              one."
         wrong "sequence main { skip in reverse { barrier \"glued\" } }"
         right "sequence main { skip in reverse { wait 1 s } barrier \"glued\" }"
@@ -451,20 +456,19 @@ codes! {
     // W0xxx: warnings.
     Unused "W0001" "something that is never used"
         why "It may have been forgotten, or what should use it is misspelt. A variable that is \
-             only \
-             assigned is not used. A name that begins with `_` is never warned about."
+             only assigned is not used. A name that begins with `_` is never warned about."
         wrong "sequence main { var count = 0 count += 1 }"
         right "sequence main { var count = 0 count += 1 if count > 0 { wait 1 s } }"
     Unreachable "W0002" "statements that are never reached"
-        why "After `return`, `break`, an error that is not continued from, or a loop without a \
-             way out, \
-             nothing in the same block is run. Such statements are left out of the module."
+        why "After `return`, `break`, an error that is not continued from, or a loop without a way \
+             out, nothing in the same block is run. Such statements are left out of the module."
         wrong "sequence main { return wait 1 s }"
         right "sequence main { wait 1 s return }"
     IntegerDivision "W0003" "a division of integers that loses its remainder"
-        why "Integers are divided towards zero: 1 / 2 is 0. Write one of them as a real, 1.0 / \
-             2, for \
-             0.5."
-        wrong "var half = 1 / 2 sequence main { if half > 0 { wait 1 s } }"
-        right "var half = 1.0 / 2 sequence main { if half > 0 { wait 1 s } }"
+        why "Integers are divided towards zero: 1 / 2 is 0. Write one of them as a real, 1.0 / 2, \
+             for 0.5."
+        wrong "var half = 1 / 2\n\
+               sequence main { if half > 0 { wait 1 s } }"
+        right "var half = 1.0 / 2\n\
+               sequence main { if half > 0 { wait 1 s } }"
 }

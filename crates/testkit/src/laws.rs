@@ -10,7 +10,7 @@ use arbitrary::{Result, Unstructured};
 use obverse_bytecode::{Verified, verify};
 use obverse_compiler::compile;
 use obverse_syntax::diagnostic::Severity;
-use obverse_vm::{Direction, Limits, Machine, Stop, Trap, TrapKind};
+use obverse_vm::{Direction, Limits, Machine, Mark, Stop, Trap, TrapKind};
 use obverse_workcell::{Arm, DigitalIo, Gripper, Workcell};
 use std::collections::{HashMap, HashSet};
 use std::fmt::Debug;
@@ -23,7 +23,9 @@ const MAX_STEPS: u64 = 6_000;
 /// # Errors
 /// Those of the randomness.
 pub fn compiles(u: &mut Unstructured<'_>) -> Result<()> {
-    Case::new(u, Options::default()).map(|_| ())
+    let source = programs::generate(u, Options::default())?;
+    Case::new(&source);
+    Ok(())
 }
 
 /// A run comes to the same in the machine and in the reference interpreter: the same commands in
@@ -32,9 +34,15 @@ pub fn compiles(u: &mut Unstructured<'_>) -> Result<()> {
 /// # Errors
 /// Those of the randomness.
 pub fn agrees_forward(u: &mut Unstructured<'_>) -> Result<()> {
-    let case = Case::new(u, Options::default())?;
-    let seed = u.arbitrary()?;
-    let Some((expected, expected_cell)) = case.reference(seed) else { return Ok(()) };
+    let source = programs::generate(u, Options::default())?;
+    agrees_forward_on(&source, u.arbitrary()?);
+    Ok(())
+}
+
+/// The same for a given program, in a workcell that follows from a seed.
+pub fn agrees_forward_on(source: &str, seed: u64) {
+    let case = Case::new(source);
+    let Some((expected, expected_cell)) = case.reference(seed) else { return };
     let mut cell = Logged::new(seed);
     let mut machine = case.machine(&cell);
     let stop = loop {
@@ -47,46 +55,56 @@ pub fn agrees_forward(u: &mut Unstructured<'_>) -> Result<()> {
     case.require(same_end, || format!("it ended otherwise: {:?}, {stop:?}", expected.ending));
     case.same("the command", "", &cell.log, &expected_cell.log);
     case.compare("at the end", &expected.last, &machine, &cell);
-    Ok(())
 }
 
 /// Step by step, forward and in reverse, the machine is at the beginning of every statement in the
 /// state in which the reference interpreter was there, down to the start or to what cannot be
-/// taken back.
+/// taken back. Run at once and gone back over from mark to mark, it is the same.
 ///
 /// # Errors
 /// Those of the randomness.
 pub fn agrees_backward(u: &mut Unstructured<'_>) -> Result<()> {
-    let case = Case::new(u, Options { allow_overrides: false, ..Options::default() })?;
-    let seed = u.arbitrary()?;
-    let Some((expected, _)) = case.reference(seed) else { return Ok(()) };
+    let source = programs::generate(u, Options { allow_overrides: false, ..Options::default() })?;
+    agrees_backward_on(&source, u.arbitrary()?);
+    Ok(())
+}
+
+/// The same for a given program without blocks that are skipped or replaced in reverse, in a
+/// workcell that follows from a seed.
+pub fn agrees_backward_on(source: &str, seed: u64) {
+    let case = Case::new(source);
+    let Some((expected, _)) = case.reference(seed) else { return };
     let starts = case.starts(&expected.history);
     let history: Vec<&StateCopy> =
         expected.history.iter().filter(|copy| starts.contains_key(&copy.span.start)).collect();
     let pcs: HashSet<u32> = starts.values().copied().collect();
     let mut cell = Logged::new(seed);
     let mut machine = case.machine(&cell);
-    let mut walk = Walk { case: &case, history, pcs, place: 0 };
+    let mut walk = Walk { case: &case, history, pcs, place: 0, marks: Vec::new() };
     walk.forward(&mut machine, &mut cell);
+    let (end, end_cell) = (machine.mark(), cell.clone());
     walk.reverse(&mut machine, &mut cell);
-    Ok(())
+    let mut cell = Logged::new(seed);
+    let mut machine = case.machine(&cell);
+    walk.run_to_end(&mut machine, &mut cell);
+    case.same("the end", "of a run", &machine.mark(), &end);
+    case.same("the commands", "of a run", &cell.log, &end_cell.log);
+    walk.reverse_to_marks(&mut machine, &mut cell);
 }
 
 /// A program and what became of it.
-struct Case {
-    source: String,
+struct Case<'s> {
+    source: &'s str,
     program: Verified,
 }
 
-impl Case {
-    fn new(u: &mut Unstructured<'_>, options: Options) -> Result<Self> {
-        let source = programs::generate(u, options)?;
-        let compiled = compile("generated.obv", &source);
-        let is_error = |severity: Severity| severity == Severity::Error;
+impl<'s> Case<'s> {
+    fn new(source: &'s str) -> Self {
+        let compiled = compile("program.obv", source);
         let errors: Vec<String> = compiled
             .diagnostics
             .iter()
-            .filter(|diagnostic| is_error(diagnostic.severity))
+            .filter(|diagnostic| diagnostic.severity == Severity::Error)
             .map(|diagnostic| {
                 let span = diagnostic.primary.span;
                 let at = source.get(span.start as usize..span.end as usize).unwrap_or_default();
@@ -96,7 +114,7 @@ impl Case {
         assert!(errors.is_empty(), "it does not compile: {errors:#?}\n{source}");
         let Some(module) = compiled.module else { panic!("no error and no module\n{source}") };
         match verify(module) {
-            Ok(program) => Ok(Self { source, program }),
+            Ok(program) => Self { source, program },
             Err(errors) => panic!("it does not verify: {errors:?}\n{source}"),
         }
     }
@@ -111,7 +129,7 @@ impl Case {
     /// What the reference interpreter says, and the workcell it said it with; nothing where it is
     /// too long a run.
     fn reference(&self, seed: u64) -> Option<(Outcome, Logged)> {
-        let parsed = obverse_syntax::parse(&self.source);
+        let parsed = obverse_syntax::parse(self.source);
         let mut cell = Logged::new(seed);
         let limits = reference::Limits { steps: MAX_STEPS, ..reference::Limits::default() };
         let outcome = reference::run(&parsed.program, &mut cell, limits);
@@ -224,13 +242,15 @@ fn is_same_end(expected: &Ending, found: &Stop) -> bool {
 
 /// A machine beside the history of the reference interpreter.
 struct Walk<'c> {
-    case: &'c Case,
+    case: &'c Case<'c>,
     /// Of the statements that have code of their own.
     history: Vec<&'c StateCopy>,
     /// Where these begin.
     pcs: HashSet<u32>,
     /// How many of the history the machine has begun.
     place: usize,
+    /// Where it was at the beginning of each.
+    marks: Vec<Mark>,
 }
 
 impl Walk<'_> {
@@ -239,12 +259,14 @@ impl Walk<'_> {
         state.operands().is_empty() && self.pcs.contains(&state.pc())
     }
 
+    /// Step by step to the end.
     fn forward(&mut self, machine: &mut Machine<'_>, cell: &mut Logged) {
         loop {
             if self.is_at_start(machine) {
                 let is_more = self.place < self.history.len();
                 self.case.require(is_more, || "the machine does more statements".to_owned());
                 self.case.compare("going forward", self.history[self.place], machine, cell);
+                self.marks.push(machine.mark());
                 self.place += 1;
             }
             match machine.step(Direction::Forward, cell, &mut ()) {
@@ -256,6 +278,7 @@ impl Walk<'_> {
         self.case.require(is_all, || "the machine does fewer statements".to_owned());
     }
 
+    /// Step by step to the start, or to what cannot be taken back.
     fn reverse(&mut self, machine: &mut Machine<'_>, cell: &mut Logged) {
         let stop = loop {
             if self.is_at_start(machine) {
@@ -275,6 +298,22 @@ impl Walk<'_> {
             }
             Stop::Refused(_) => {}
             stop => self.case.require(false, || format!("reverse stopped: {stop:?}")),
+        }
+    }
+
+    /// At a run to the end.
+    fn run_to_end(&self, machine: &mut Machine<'_>, cell: &mut Logged) {
+        while let Stop::Raised { .. } = machine.run(Direction::Forward, Limits::NONE, cell, &mut ())
+        {
+        }
+    }
+
+    /// From statement to statement, at a run, as far as it went by steps.
+    fn reverse_to_marks(&self, machine: &mut Machine<'_>, cell: &mut Logged) {
+        for at in (self.place..self.history.len()).rev() {
+            let stop = machine.reverse_to(self.marks[at], cell, &mut ());
+            self.case.require(stop == Stop::AtMark, || format!("no mark was met: {stop:?}"));
+            self.case.compare("back at the mark", self.history[at], machine, cell);
         }
     }
 }

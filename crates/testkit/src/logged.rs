@@ -1,10 +1,11 @@
-//! The bookkeeping workcell with a log of what it was commanded.
+//! The bookkeeping workcell with a log of what it was commanded, and with things in the way: every
+//! third motion that a force may stop is stopped by it half-way.
 
 use crate::Ledger;
 use obverse_geometry::{JointConfiguration, Pose};
 use obverse_workcell::{
-    Arm, Clock, Dice, DigitalIo, Fault, ForceTorque, Gripper, ItemId, Items, Motion, MotionReport,
-    Safety, ToolId, Workcell,
+    Arm, Clock, Dice, DigitalIo, Fault, ForceTorque, Gripper, ItemId, Items, Motion, MotionEnd,
+    MotionReport, Safety, ToolId, Workcell,
 };
 
 /// Something that a workcell was told to do.
@@ -25,13 +26,21 @@ pub struct Logged {
     pub ledger: Ledger,
     /// What it was told to do.
     pub log: Vec<Command>,
+    last: MotionReport,
 }
 
 impl Logged {
     /// A workcell whose readings and draws follow from a seed.
     #[must_use]
     pub fn new(seed: u64) -> Self {
-        Self { ledger: Ledger::new(seed), log: Vec::new() }
+        let ledger = Ledger::new(seed);
+        let last = ledger.last_motion();
+        Self { ledger, log: Vec::new(), last }
+    }
+
+    /// Whether the motion that is logged now meets something, if it feels for it.
+    fn meets_something(&self) -> bool {
+        (self.ledger.seed ^ self.log.len() as u64).is_multiple_of(3)
     }
 }
 
@@ -42,11 +51,19 @@ impl Arm for Logged {
 
     fn execute(&mut self, motion: &Motion) -> Result<MotionReport, Fault> {
         self.log.push(Command::Execute(*motion));
-        self.ledger.execute(motion)
+        let start = self.ledger.joints;
+        self.last = self.ledger.execute(motion)?;
+        if let Some(limit_n) = motion.force_limit_n.filter(|_| self.meets_something()) {
+            self.ledger.joints = start.towards(&self.ledger.joints, 0.5);
+            self.last.end = MotionEnd::StoppedByForce;
+            self.last.distance_m *= 0.5;
+            self.last.peak_force_n = limit_n;
+        }
+        Ok(self.last)
     }
 
     fn last_motion(&self) -> MotionReport {
-        self.ledger.last_motion()
+        self.last
     }
 }
 

@@ -67,6 +67,7 @@ macro_rules! borrow {
     ($values:ident) => {
         Values {
             operands: &mut *$values.operands,
+            top: $values.top,
             depth: $values.depth,
             slots: &mut *$values.slots,
             globals: &mut *$values.globals,
@@ -192,7 +193,7 @@ fn check_assertion(
     if let Err((at, kind)) = evaluate(code, start, join, &mut values) {
         return Some(Exit::Trap(at, kind));
     }
-    (!values.pop_bool()).then_some(Exit::Trap(jump, TrapKind::Assertion { by_jump: true }))
+    (values.top() == 0).then_some(Exit::Trap(jump, TrapKind::Assertion { by_jump: true }))
 }
 
 /// Run forward until something else is needed, a back edge passes `limit` steps, or, with `ONE`,
@@ -226,6 +227,7 @@ pub(crate) fn forward<R: Recorder, const ONE: bool>(
     }
     let exit = for_each_op!(dispatch);
     *place = run.place;
+    run.values.spill();
     values.depth = run.values.depth;
     exit
 }
@@ -269,9 +271,43 @@ pub(crate) fn evaluate(
     Ok(())
 }
 
+/// What running in reverse needs to know of each instruction, found once: every load in the chain
+/// from a statement to the one before it counts.
+#[derive(Debug)]
+pub(crate) struct Ways {
+    /// For a join, where the statement of its jump begins.
+    back: Vec<u32>,
+    /// How many instructions of its prefix an effect needs run again before it can be reversed.
+    rerun: Vec<u8>,
+}
+
+impl Ways {
+    /// The ways of a module's code.
+    pub(crate) fn of(code: &[Instr]) -> Self {
+        let start_of_jump = |instr: &Instr| {
+            let from = instr.join_from()?;
+            let jump = code.get(from.index())?;
+            Some(from.0 - u32::from(jump.prefix()))
+        };
+        let rerun = |instr: &Instr| match instr {
+            Instr::AddLocal { .. }
+            | Instr::SubLocal { .. }
+            | Instr::AddGlobal { .. }
+            | Instr::SubGlobal { .. }
+            | Instr::JoinAssert { .. } => instr.prefix(),
+            _ => 0,
+        };
+        Self {
+            back: code.iter().map(|instr| start_of_jump(instr).unwrap_or(0)).collect(),
+            rerun: code.iter().map(rerun).collect(),
+        }
+    }
+}
+
 struct Reverse<'r, 'a> {
     code: &'r [Instr],
     way_back: &'r [u32],
+    rerun: &'r [u8],
     values: Values<'a>,
     place: Place,
     tape: &'r mut Tape,
@@ -301,32 +337,29 @@ impl Reverse<'_, '_> {
         self.place.pc = self.way_back[landed] as usize;
         undone.err().map(|failure| trap(from, failure))
     }
+}
 
-    /// Run the prefix of the effect at an index, so that its operands are there.
-    #[inline(always)]
-    fn operands(&mut self, effect: usize, prefix: usize) -> Option<Exit> {
-        if prefix == 0 {
-            return None;
+/// Forward once more, within reverse: one opcode of a prefix.
+macro_rules! rerun_arm {
+    ($op:expr, $run:ident, $at:ident, $failed:ident, value) => {
+        if let Err(kind) = $op.run(&mut $run.values) {
+            $failed = Some(Exit::Trap($at, kind));
+            break;
         }
-        let values = &mut self.values;
-        let mut probe = borrow!(values);
-        probe.depth = 0;
-        let ran = evaluate(self.code, effect - prefix, effect, &mut probe);
-        ran.err().map(|(at, kind)| Exit::Trap(at, kind))
-    }
+    };
+    ($op:expr, $run:ident, $at:ident, $failed:ident, $other:ident) => {{
+        let _ = $op;
+        break;
+    }};
 }
 
 /// Reverse: one opcode, by family and class. `$at` is the instruction, `$prefix` its prefix.
 macro_rules! reverse_arm {
     ($op:expr, $run:ident, $instr:ident, $at:ident, $prefix:expr, variable always) => {{
-        let prefix = $prefix;
-        if let Some(exit) = $run.operands($at, prefix) {
-            break exit;
-        }
         if let Err(failure) = $op.reverse(&mut Variables(&mut $run.values)) {
             break trap($at, failure);
         }
-        $run.place.pc = $at - prefix;
+        $run.place.pc = $at - $prefix;
     }};
     ($op:expr, $run:ident, $instr:ident, $at:ident, $prefix:expr, variable after_forward $record:ident) => {{
         let Some(saved) = record::$record::pop($run.tape) else {
@@ -338,11 +371,6 @@ macro_rules! reverse_arm {
         $run.place.pc = $at - $prefix;
     }};
     ($op:expr, $run:ident, $instr:ident, $at:ident, $prefix:expr, flow always) => {{
-        if matches!($instr, Instr::JoinAssert { .. }) {
-            if let Some(exit) = $run.operands($at, $prefix) {
-                break exit;
-            }
-        }
         let mut variables = Variables(&mut $run.values);
         let mut course = Course { variables: &mut variables, way: Way::Beside };
         if let Err(failure) = $op.reverse(&mut course) {
@@ -385,19 +413,23 @@ macro_rules! retrace {
 
 /// Run in reverse, a statement at a time, until something else is needed, no more than `floor`
 /// steps are left, or, with `ONE`, after one statement. Begins between statements.
-///
-/// `way_back` says for each join where the statement of its jump begins: one load in the chain from
-/// one statement to the one before it, where the label and the jump's prefix would be two.
 #[inline(never)]
 pub(crate) fn reverse<const ONE: bool>(
     code: &[Instr],
-    way_back: &[u32],
+    ways: &Ways,
     values: &mut Values<'_>,
     place: &mut Place,
     floor: u64,
     tape: &mut Tape,
 ) -> Exit {
-    let mut run = Reverse { code, way_back, values: borrow!(values), place: *place, tape };
+    let mut run = Reverse {
+        code,
+        way_back: &ways.back,
+        rerun: &ways.rerun,
+        values: borrow!(values),
+        place: *place,
+        tape,
+    };
     run.values.depth = 0;
     macro_rules! dispatch {
         ($(
@@ -407,6 +439,21 @@ pub(crate) fn reverse<const ONE: bool>(
         )*) => {
             loop {
                 let Some(at) = run.place.pc.checked_sub(1) else { break Exit::Slow };
+                let rerun = usize::from(run.rerun[at]);
+                if rerun > 0 {
+                    run.values.depth = 0;
+                    let mut failed = None;
+                    for at in at - rerun..at {
+                        match run.code[at] {
+                            $(Instr::$ident { $($field,)* } => rerun_arm!(
+                                op::$ident { $($field,)* }, run, at, failed, $family
+                            ),)*
+                        }
+                    }
+                    if let Some(exit) = failed {
+                        break exit;
+                    }
+                }
                 let instr = run.code[at];
                 match instr {
                     $(Instr::$ident { $($field,)* } => {

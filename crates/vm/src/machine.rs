@@ -6,7 +6,7 @@ use crate::state::{Direction, Frame, State};
 use crate::step::{Host, Observer, Outcome};
 use crate::stop::Stop;
 use obverse_bytecode::Verified;
-use obverse_isa::{Class, Instr};
+use obverse_isa::Class;
 use obverse_tape::{NoTape, Tape};
 use obverse_workcell::Workcell;
 use xxhash_rust::xxh3::Xxh3;
@@ -17,8 +17,7 @@ use xxhash_rust::xxh3::Xxh3;
 pub struct Machine<'p> {
     pub(crate) program: &'p Verified,
     pub(crate) constants: Vec<u64>,
-    /// For each join, where the statement of its jump begins.
-    way_back: Vec<u32>,
+    ways: hot::Ways,
     pub(crate) links: Links,
     pub(crate) state: State,
     pub(crate) tape: Option<Tape>,
@@ -60,6 +59,7 @@ macro_rules! values {
             None => unreachable!("a machine always has the frame of its start"),
         };
         $crate::values::Values {
+            top: state.operands[usize::from(state.depth.wrapping_sub(1))],
             operands: &mut state.operands,
             depth: state.depth,
             slots: &mut frame.slots,
@@ -74,15 +74,6 @@ macro_rules! values {
     }};
 }
 pub(crate) use values;
-
-fn way_back(code: &[Instr]) -> Vec<u32> {
-    let start_of_jump = |instr: &Instr| {
-        let from = instr.join_from()?;
-        let jump = code.get(from.index())?;
-        Some(from.0 - u32::from(jump.prefix()))
-    };
-    code.iter().map(|instr| start_of_jump(instr).unwrap_or(0)).collect()
-}
 
 impl<'p> Machine<'p> {
     /// A machine at the start of a program, with an empty tape.
@@ -109,7 +100,7 @@ impl<'p> Machine<'p> {
         Ok(Self {
             program,
             constants: module.constants.iter().map(|constant| constant.bits()).collect(),
-            way_back: way_back(&module.code),
+            ways: hot::Ways::of(&module.code),
             links,
             state,
             tape: Some(Tape::default()),
@@ -261,6 +252,7 @@ impl<'p> Machine<'p> {
         self.state.depth = 0;
         let mut values = values!(self);
         let ran = hot::evaluate(code, start, at, &mut values);
+        values.spill();
         let depth = values.depth;
         self.state.depth = depth;
         ran.map_err(|(at, kind)| self.trapped(at, kind))
@@ -332,7 +324,7 @@ impl<'p> Machine<'p> {
         let Some(tape) = &mut self.tape else {
             return Exit::Trap(place.pc, crate::stop::TrapKind::NoTape);
         };
-        let exit = hot::reverse::<ONE>(code, &self.way_back, &mut values, &mut place, floor, tape);
+        let exit = hot::reverse::<ONE>(code, &self.ways, &mut values, &mut place, floor, tape);
         self.state.place = place;
         exit
     }

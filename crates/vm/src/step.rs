@@ -411,6 +411,7 @@ impl Machine<'_> {
         self.state.depth = 0;
         let mut values = values!(self);
         let ran = hot::evaluate(code, start, effect, &mut values);
+        values.spill();
         let depth = values.depth;
         self.state.depth = depth;
         ran.map_err(|(at, kind)| Stop::Trap(Trap { pc: at as u32, kind }))

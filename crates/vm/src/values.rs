@@ -26,8 +26,13 @@ pub struct Fixed<'a> {
 }
 
 /// What a pure instruction may touch: it reads all, and changes the operand stack alone.
+///
+/// The newest operand is in `top` and the others below it in `operands`, so that a chain of
+/// instructions passes its value on in a register. With an empty stack `top` means nothing, and the
+/// place that it is spilled to is one that no stack reaches.
 pub struct Values<'a> {
     pub(crate) operands: &'a mut Slots,
+    pub(crate) top: u64,
     pub(crate) depth: u8,
     pub(crate) slots: &'a mut Slots,
     pub(crate) globals: &'a mut [u64],
@@ -50,12 +55,53 @@ impl CounterSlots {
     }
 }
 
+/// Where the operand is that is so far below the top, counted from the empty stack.
+#[inline(always)]
+fn place(depth: u8, below: u8) -> usize {
+    usize::from(depth.wrapping_sub(below))
+}
+
 impl Values<'_> {
+    /// Write the newest operand where the others are.
+    #[inline(always)]
+    pub(crate) fn spill(&mut self) {
+        self.operands[place(self.depth, 1)] = self.top;
+    }
+
     /// Push a word.
     #[inline(always)]
     pub fn push(&mut self, word: u64) {
-        self.operands[usize::from(self.depth)] = word;
+        self.spill();
+        self.top = word;
         self.depth = self.depth.wrapping_add(1);
+    }
+
+    /// Replace the newest operand by what is made of it.
+    #[inline(always)]
+    pub fn unary(&mut self, make: impl FnOnce(u64) -> u64) {
+        self.top = make(self.top);
+    }
+
+    /// Replace the two newest operands, older first, by what is made of them.
+    #[inline(always)]
+    pub fn binary(&mut self, make: impl FnOnce(u64, u64) -> u64) {
+        let older = self.operands[place(self.depth, 2)];
+        self.depth = self.depth.wrapping_sub(1);
+        self.top = make(older, self.top);
+    }
+
+    /// The newest operand.
+    #[inline(always)]
+    #[must_use]
+    pub fn top(&self) -> u64 {
+        self.top
+    }
+
+    /// The operand below the newest.
+    #[inline(always)]
+    #[must_use]
+    pub fn below(&self) -> u64 {
+        self.operands[place(self.depth, 2)]
     }
 
     /// Push an integer.
@@ -74,31 +120,6 @@ impl Values<'_> {
     #[inline(always)]
     pub fn push_bool(&mut self, value: bool) {
         self.push(u64::from(value));
-    }
-
-    /// Pop a word.
-    #[inline(always)]
-    pub fn pop(&mut self) -> u64 {
-        self.depth = self.depth.wrapping_sub(1);
-        self.operands[usize::from(self.depth)]
-    }
-
-    /// Pop an integer.
-    #[inline(always)]
-    pub fn pop_int(&mut self) -> i64 {
-        self.pop().cast_signed()
-    }
-
-    /// Pop a real.
-    #[inline(always)]
-    pub fn pop_real(&mut self) -> f64 {
-        f64::from_bits(self.pop())
-    }
-
-    /// Pop a truth value.
-    #[inline(always)]
-    pub fn pop_bool(&mut self) -> bool {
-        self.pop() != 0
     }
 
     /// A local variable.
@@ -136,15 +157,22 @@ impl Values<'_> {
     }
 }
 
-/// What an effect on variables may touch. Its operands lie from the bottom of the operand stack.
+/// What an effect on variables may touch.
 pub struct Variables<'v, 'a>(pub(crate) &'v mut Values<'a>);
 
 impl Variables<'_, '_> {
-    /// The operand at a place of the stack picture, from 0.
+    /// The last operand of the stack picture.
     #[inline(always)]
     #[must_use]
-    pub fn operand(&self, at: usize) -> u64 {
-        self.0.operands[at]
+    pub fn top(&self) -> u64 {
+        self.0.top()
+    }
+
+    /// The operand before the last.
+    #[inline(always)]
+    #[must_use]
+    pub fn below(&self) -> u64 {
+        self.0.below()
     }
 
     /// A local variable.

@@ -2,7 +2,7 @@
 
 use super::Checker;
 use super::expression::{MAX_COMPUTED, Need};
-use super::frame::{Around, MAX_SLOTS};
+use super::frame::Around;
 use super::names::Meaning;
 use super::statement::Checked;
 use crate::tree::{Block, Expression, Prepared, Statement, StatementKind};
@@ -114,9 +114,6 @@ impl<'s> Checker<'s> {
         // Blocks are at most 64 deep in one another, so that there are enough counters.
         self.frame.counters = self.frame.counters.saturating_add(1);
         self.frame.layout.counters = self.frame.layout.counters.max(self.frame.counters);
-        if self.frame.slots() > MAX_SLOTS {
-            self.report_full(header);
-        }
         let scope = self.names.open();
         if let Some(name) = name {
             self.declare(name, Meaning::Counter(counter));

@@ -224,7 +224,7 @@ impl<'s> Checker<'s> {
     /// A variable of a function, of its own name.
     pub(super) fn declare_local(&mut self, name: Name<'s>, of_type: ValueType) -> Meaning {
         let machine: Type = of_type.machine();
-        let local = self.frame.local(name.value, machine);
+        let local = self.frame.layout.add(name.value, machine);
         let local = self.room_for(local, name.span);
         let meaning = Meaning::Local(local, of_type);
         self.declare(name, meaning);

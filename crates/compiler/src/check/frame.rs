@@ -2,12 +2,8 @@
 //! stands around the statement in hand. Knows nothing of names.
 
 use crate::tree::{Hoist, Layout, MoveResults};
-use obverse_bytecode::Variable;
 use obverse_isa::{FunctionId, JointsId, LocalId, Setting, Type};
 use obverse_syntax::span::Span;
-
-/// How many words a frame has at the most; a local is one, a loop counter three.
-pub(crate) const MAX_SLOTS: usize = 256;
 
 /// What becomes of a reading in an expression.
 #[derive(Clone, Copy, Debug)]
@@ -71,7 +67,6 @@ pub(crate) struct FrameScope {
     hoists: Vec<Hoist>,
     busy: Vec<LocalId>,
     free: Vec<LocalId>,
-    hidden: usize,
 }
 
 impl FrameScope {
@@ -92,39 +87,25 @@ impl FrameScope {
             hoists: Vec::new(),
             busy: Vec::new(),
             free: Vec::new(),
-            hidden: 0,
         }
-    }
-
-    /// How many words the frame has so far.
-    pub(crate) fn slots(&self) -> usize {
-        self.layout.locals.len() + 3 * usize::from(self.layout.counters)
-    }
-
-    /// A new local; none if there are too many.
-    pub(crate) fn local(&mut self, name: &str, of_type: Type) -> Option<LocalId> {
-        if self.slots() >= MAX_SLOTS {
-            return None;
-        }
-        let local = u8::try_from(self.layout.locals.len()).ok().map(LocalId)?;
-        self.layout.locals.push(Variable { name: name.to_owned(), of_type });
-        Some(local)
     }
 
     /// A hidden local that is kept until it is given back.
-    pub(crate) fn hidden(&mut self, of_type: Type) -> Option<LocalId> {
-        let is_fit = |local: &LocalId| self.layout.locals[local.index()].of_type == of_type;
-        if let Some(index) = self.free.iter().position(is_fit) {
-            return Some(self.free.remove(index));
+    pub(crate) fn hidden(&mut self, name: &str, of_type: Type) -> Option<LocalId> {
+        let is_fit = |local: &LocalId| {
+            let known = &self.layout.locals[local.index()];
+            known.of_type == of_type
+                && known.name.trim_end_matches(|c: char| c.is_ascii_digit()) == format!("${name}")
+        };
+        match self.free.iter().position(is_fit) {
+            Some(index) => Some(self.free.remove(index)),
+            None => self.layout.add_hidden(name, of_type),
         }
-        let name = format!("${}", self.hidden);
-        self.hidden += 1;
-        self.local(&name, of_type)
     }
 
     /// A hidden local for the statement in hand.
     pub(crate) fn temporary(&mut self, of_type: Type) -> Option<LocalId> {
-        let local = self.hidden(of_type)?;
+        let local = self.hidden("", of_type)?;
         self.busy.push(local);
         Some(local)
     }

@@ -4,7 +4,7 @@ use super::Checker;
 use super::frame::FrameScope;
 use super::names::Meaning;
 use crate::report::warning;
-use crate::tree::{Block, Body, Function, Statement};
+use crate::tree::{Block, Body, Function, MAX_SLOTS, Statement};
 use crate::types::ValueType;
 use obverse_bytecode::FunctionKind;
 use obverse_isa::{FunctionId, LocalId};
@@ -110,6 +110,9 @@ impl<'s> Checker<'s> {
         named: Span,
         body: Body,
     ) -> Function {
+        if self.frame.layout.slots() > MAX_SLOTS {
+            self.report_full(named);
+        }
         self.names.close(&outer.scope);
         self.names.close_frame(&outer.names);
         let inner = std::mem::replace(&mut self.frame, outer.frame);

@@ -126,10 +126,12 @@ impl<'s> Checker<'s> {
             // Nothing pushes harder: the move goes all the way or fails.
             None => alone(Expression::real(f64::MAX, ValueType::FORCE, motion)),
         };
-        let speed = clauses.speed.map(|(word, span)| (speed(word), self.hidden(Type::Speed, span)));
+        let speed = clauses
+            .speed
+            .map(|(word, span)| (speed(word), self.hidden("speed", Type::Speed, span)));
         let results = MoveResults {
-            distance: self.hidden(Type::Real, motion),
-            force: self.hidden(Type::Real, motion),
+            distance: self.hidden("distance", Type::Real, motion),
+            force: self.hidden("force", Type::Real, motion),
         };
         let (succeeds, succeeds_span) = match clauses.succeeds_if {
             Some((condition, span)) => (self.succeeds(condition, results), span),
@@ -299,7 +301,8 @@ impl<'s> Checker<'s> {
             self.reports.error(Code::OutOfRange, times.span, message, &at);
         }
         self.frame.layout.counters = 1;
-        let draws = [self.hidden(Type::Real, span), self.hidden(Type::Real, span)];
+        let draws =
+            [self.hidden("aside", Type::Real, span), self.hidden("aside", Type::Real, span)];
         Retry { times: i32::try_from(times.value).unwrap_or(1), within, draws, span }
     }
 }

@@ -18,7 +18,7 @@ mod statement;
 
 use crate::keyframes::KeyframeFlow;
 use crate::report::Reports;
-use crate::tree::{Expression, Function};
+use crate::tree::{Expression, Function, MAX_SLOTS};
 use crate::types::ValueType;
 use frame::FrameScope;
 use names::{Found, Meaning, Names};
@@ -30,7 +30,6 @@ use obverse_syntax::diagnostic::Diagnostic;
 use obverse_syntax::span::Span;
 use std::collections::{BTreeSet, HashMap};
 
-pub(crate) use frame::MAX_SLOTS;
 pub(crate) use program::check;
 
 /// What a caller knows of a function.
@@ -202,8 +201,8 @@ impl<'s> Checker<'s> {
     }
 
     /// A hidden local until it is given back.
-    fn hidden(&mut self, of_type: Type, span: Span) -> LocalId {
-        let local = self.frame.hidden(of_type);
+    fn hidden(&mut self, name: &str, of_type: Type, span: Span) -> LocalId {
+        let local = self.frame.hidden(name, of_type);
         self.room_for(local, span)
     }
 }

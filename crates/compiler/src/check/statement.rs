@@ -375,20 +375,20 @@ impl<'s> Checker<'s> {
         block: Option<&ast::Block<'s>>,
         span: Span,
     ) -> Checked {
-        let of_type = match value.setting() {
-            Setting::Speed => Type::Speed,
-            Setting::Tool => Type::Tool,
+        let (name, of_type) = match value.setting() {
+            Setting::Speed => ("speed", Type::Speed),
+            Setting::Tool => ("tool", Type::Tool),
         };
         let Some(block) = block else {
             let setting = value.setting();
             if self.frame.modal.iter().all(|(known, _)| *known != setting) {
-                let former = self.hidden(of_type, span);
+                let former = self.hidden(name, of_type, span);
                 self.frame.modal.push((setting, former));
             }
             return Some((self.done(StatementKind::Set(value), span), true));
         };
         let header = self.header(span.start, block.span);
-        let former = self.hidden(of_type, span);
+        let former = self.hidden(name, of_type, span);
         let block = self.block(block);
         self.frame.give_back(former);
         let falls_through = block.falls_through;

@@ -18,7 +18,7 @@ impl Lower<'_> {
             StatementKind::While { condition, entered_when, body } => {
                 self.open_loop();
                 let skip = self.while_loop(condition, entered_when.as_ref(), body);
-                self.end(body.end);
+                self.at(body.end, None);
                 self.join_one(skip);
                 self.close_loop();
             }
@@ -30,7 +30,7 @@ impl Lower<'_> {
             StatementKind::Loop(body) => {
                 self.open_loop();
                 self.endless(body);
-                self.end(body.end);
+                self.at(body.end, None);
                 self.close_loop();
             }
             _ => {}
@@ -53,18 +53,18 @@ impl Lower<'_> {
         let skip = self.code.jump(|target| test.to(target));
         self.block(then);
         let Some(otherwise) = otherwise else {
-            self.end(then.end);
+            self.at(then.end, None);
             return match ending_when {
                 // Reached by the jump where the condition does not hold.
                 Some(predicate) => self.join_asserted(skip, predicate, false),
                 None => self.join_one(skip),
             };
         };
-        self.end(then.end);
+        self.at(then.end, None);
         let over = self.frame.is_reached.then(|| self.jump());
         self.join_one(skip);
         self.block(otherwise);
-        self.end(otherwise.end);
+        self.at(otherwise.end, None);
         match (over, ending_when) {
             (Some(over), Some(predicate)) => self.join_asserted(over, predicate, true),
             (Some(over), None) => self.join_one(over),
@@ -121,7 +121,7 @@ impl Lower<'_> {
         let skip = self.leave_unless(condition);
         self.block(body);
         if let Some(top) = top {
-            self.end(body.end);
+            self.at(body.end, None);
             self.jump_back(top);
         }
         skip
@@ -156,7 +156,7 @@ impl Lower<'_> {
             self.code.jump(|target| Instr::JumpIf { prefix: PREFIX, target })
         });
         self.block(body);
-        self.end(body.end);
+        self.at(body.end, None);
         never.into_iter().for_each(|never| self.join_one(never));
         self.code.jump_back(top, |target| Instr::ForNext { counter, target });
         self.code.join(exit, |from| Instr::ForExit { counter, from });
@@ -169,7 +169,7 @@ impl Lower<'_> {
         }
         let top = self.join_ahead();
         self.block(body);
-        self.end(body.end);
+        self.at(body.end, None);
         let breaks = self.frame.loops.last().is_some_and(|around| !around.breaks.is_empty());
         if breaks || self.has_way_out() {
             return self.jump_back(top);

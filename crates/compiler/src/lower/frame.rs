@@ -2,9 +2,8 @@
 
 use super::Lower;
 use super::leave::Way;
-use crate::check::MAX_SLOTS;
 use crate::tree::Layout;
-use obverse_bytecode::{Mark, Variable};
+use obverse_bytecode::Mark;
 use obverse_isa::{Instr, Label, LocalId, ReasonId, Setting, Type};
 use obverse_syntax::span::Span;
 
@@ -37,8 +36,6 @@ pub(super) struct Frame<'p> {
     pub(super) rounds: Option<LocalId>,
     /// Which way leads out of a block with a reverse of its own, if any does.
     pub(super) way: Option<LocalId>,
-    /// How many hidden locals lowering has added.
-    pub(super) hidden: usize,
 }
 
 /// A loop.
@@ -62,21 +59,10 @@ pub(super) enum Scope {
 impl Lower<'_> {
     /// A hidden local more.
     pub(super) fn hidden(&mut self, name: &str, of_type: Type) -> LocalId {
-        let frame = &mut self.frame;
-        let slots = frame.layout.locals.len() + 3 * usize::from(frame.layout.counters);
-        if slots >= MAX_SLOTS {
+        self.frame.layout.add_hidden(name, of_type).unwrap_or_else(|| {
             self.too_many("a sequence has no room for the variables that its errors need");
-            return LocalId(0);
-        }
-        let local = LocalId(frame.layout.locals.len() as u8);
-        // A name that a hidden local of the tree does not have.
-        let name = match frame.hidden {
-            0 => format!("${name}"),
-            number => format!("${name}{number}"),
-        };
-        frame.hidden += 1;
-        frame.layout.locals.push(Variable { name, of_type });
-        local
+            LocalId(0)
+        })
     }
 
     /// Jumps come together here: the first is landed on if nothing comes from above, all others

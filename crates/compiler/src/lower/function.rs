@@ -5,7 +5,6 @@ use super::frame::Frame;
 use crate::tree::{Body, Function};
 use obverse_bytecode::{Continuation, FunctionKind};
 use obverse_isa::{FunctionId, Instr, Type};
-use obverse_syntax::span::Span;
 
 impl<'p> Lower<'p> {
     /// A function other than the start.
@@ -62,7 +61,7 @@ impl<'p> Lower<'p> {
             self.join_ahead()
         });
         self.block(block);
-        self.end(block.end);
+        self.at(block.end, None);
         if let Some(top) = top {
             let over = self.frame.is_reached.then(|| self.jump());
             let restarts = std::mem::take(&mut self.frame.restarts);
@@ -83,10 +82,5 @@ impl<'p> Lower<'p> {
         for &(setting, local) in self.frame.modal {
             self.restore(setting, local);
         }
-    }
-
-    /// The place of a function's name, for what belongs to no statement.
-    pub(super) fn named(&mut self, span: Span) {
-        self.at(span, None);
     }
 }

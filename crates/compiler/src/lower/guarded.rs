@@ -30,14 +30,14 @@ impl Lower<'_> {
                 self.motion_and_results(guarded);
                 if !has_aftermath {
                     // Whether it has succeeded changes nothing.
-                    return self.end(guarded.spans.end);
+                    return self.at(guarded.spans.end, None);
                 }
                 self.jump_if_succeeded(guarded)
             }
         };
         self.aftermath_failure(guarded, cannot);
         self.aftermath_success(guarded, succeeded);
-        self.end(guarded.spans.end);
+        self.at(guarded.spans.end, None);
     }
 
     /// What must hold before: the jump to what follows if it does not, or a trap.
@@ -152,7 +152,7 @@ impl Lower<'_> {
         self.join_one(succeeded);
         self.return_to_initial(aftermath, guarded.initial);
         self.throw(aftermath);
-        self.end(guarded.spans.end);
+        self.at(guarded.spans.end, None);
         over.into_iter().for_each(|over| self.join_one(over));
     }
 

@@ -120,15 +120,11 @@ impl<'p> Lower<'p> {
 
     /// What follows is of this place in the source.
     fn at(&mut self, span: Span, action: Option<ActionKind>) {
-        let entry = SourceEntry {
-            first: self.code.here(),
-            file: 0,
-            start: span.start,
-            end: span.end,
-            action,
-        };
+        let (first, start, end) = (self.code.here(), span.start, span.end);
+        let entry = SourceEntry { first, file: 0, start, end, action };
         match self.source_map.last_mut() {
-            Some(last) if last.first == entry.first => *last = entry,
+            Some(last) if last.first == first => *last = entry,
+            Some(last) if (last.start, last.end) == (start, end) && action.is_none() => {}
             _ => self.source_map.push(entry),
         }
     }

@@ -30,7 +30,7 @@ impl<'p> Lower<'p> {
         let main = program.function(program.main);
         self.frame =
             Frame { named: main.named, is_start: true, is_reached: true, ..Frame::default() };
-        self.named(main.named);
+        self.at(main.named, None);
         self.push(Instr::Enter {});
         let top = self.globals.restart.map(|_| {
             let rounds = self.hidden("rounds", Type::Int);
@@ -41,7 +41,7 @@ impl<'p> Lower<'p> {
             let global = GlobalId(u16::try_from(index).unwrap_or(u16::MAX));
             self.store(Place::Global(global), value);
         }
-        self.named(main.named);
+        self.at(main.named, None);
         let call = StatementKind::Call(program.main, Vec::new());
         let due = self.due(&call);
         let site = self.begin_site(&due);

@@ -6,7 +6,6 @@ use super::leave::Way;
 use crate::tree::{Block, Expression, Motion, SettingValue, Statement, StatementKind};
 use obverse_bytecode::{ActionKind, Mark};
 use obverse_isa::{Bit, ErrorId, FunctionId, Instr, Label, Level, LocalId, Prefix, Setting};
-use obverse_syntax::span::Span;
 
 /// The builder counts prefixes.
 pub(super) const PREFIX: Prefix = Prefix(0);
@@ -210,11 +209,6 @@ impl Lower<'_> {
             None => Instr::BlockSkip { from },
         });
         self.go_on(&ways);
-    }
-
-    /// The place of the end of something.
-    pub(super) fn end(&mut self, span: Span) {
-        self.at(span, None);
     }
 }
 

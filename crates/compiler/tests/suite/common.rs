@@ -39,7 +39,7 @@ pub(crate) fn function<'m>(module: &'m Module, name: &str) -> &'m Function {
 }
 
 /// A function's code, an instruction a line; jumps as distances, prefixes left out.
-pub(crate) fn code(module: &Module, name: &str) -> String {
+fn code(module: &Module, name: &str) -> String {
     let function = function(module, name);
     let range = function.first as usize..function.end as usize;
     let lines = range.map(|at| instruction(module, function, at));
@@ -91,7 +91,12 @@ fn instruction(module: &Module, function: &Function, at: usize) -> String {
     text
 }
 
+/// That a function of a program becomes this code.
+pub(crate) fn check_code(source: &str, function: &str, expected: &str) {
+    assert_eq!(code(&module(source), function), lines(expected));
+}
+
 /// Lines with their indentation taken off, for comparison.
-pub(crate) fn lines(text: &str) -> String {
+fn lines(text: &str) -> String {
     text.lines().map(str::trim).filter(|line| !line.is_empty()).collect::<Vec<_>>().join("\n")
 }

@@ -245,7 +245,8 @@ fn values_that_cannot_be_meant() {
         r#"
 io open { set 70000 low sleep -1 s }
 error jam { recover by reversing 0 actions, perturbed -1 mm }
-advanced move go { distance 0 mm x stop if force > -1 N on failure { repeat with perturbation 0 times } }
+advanced move go { distance 0 mm x stop if force > -1 N
+  on failure { repeat with perturbation 0 times } }
 var big = 1e200 * 1e200
 sequence main { wait -1 s var n = 1 / 0 n = n mod 0 }
 "#,
@@ -256,10 +257,10 @@ sequence main { wait -1 s var n = 1 / 0 n = n mod 0 }
             r#"E0210 2:45 "perturbed -1 mm""#,
             r#"E0210 3:29 "0 mm""#,
             r#"E0210 3:36 "stop if force > -1 N""#,
-            r#"E0210 3:95 "0""#,
-            r#"E0210 4:11 "1e200 * 1e200""#,
-            r#"E0210 5:22 "-1 s""#,
-            r#"E0207 5:39 "0""#,
+            r#"E0210 4:41 "0""#,
+            r#"E0210 5:11 "1e200 * 1e200""#,
+            r#"E0210 6:22 "-1 s""#,
+            r#"E0207 6:39 "0""#,
         ],
     );
 }
@@ -271,7 +272,8 @@ fn clauses_stand_once_and_advanced_moves_have_a_distance() {
 cell "a.toml"
 cell "b.toml"
 error jam { severity fatal severity warning then stop then continue }
-error two { recover by reversing 2 actions, slower, slower otherwise stop otherwise operator respond at once respond at once }
+error two { recover by reversing 2 actions, slower, slower otherwise stop
+  otherwise operator respond at once respond at once }
 advanced move go { speed slow speed fast }
 advanced move on { distance 1 mm x distance 2 mm y }
 sequence main { wait 1 s }
@@ -281,11 +283,11 @@ sequence main { wait 1 s }
             r#"E0303 3:28 "severity warning""#,
             r#"E0303 3:55 "then continue""#,
             r#"E0303 4:53 "slower""#,
-            r#"E0303 4:75 "otherwise operator""#,
-            r#"E0303 4:110 "respond at once""#,
-            r#"E0304 5:15 "go""#,
-            r#"E0303 5:31 "speed fast""#,
-            r#"E0303 6:36 "distance 2 mm y""#,
+            r#"E0303 5:3 "otherwise operator""#,
+            r#"E0303 5:38 "respond at once""#,
+            r#"E0304 6:15 "go""#,
+            r#"E0303 6:31 "speed fast""#,
+            r#"E0303 7:36 "distance 2 mm y""#,
         ],
     );
 }
@@ -296,18 +298,20 @@ fn an_advanced_move_is_stopped_by_a_force_and_repeated_after_a_failure() {
         r#"
 advanced move a { distance 1 mm x stop if distance > 1 mm }
 advanced move b { distance 1 mm x stop if force < 1 N }
-advanced move c { distance 1 mm x stop if 5 N < force on success { repeat with perturbation 2 times } }
-advanced move d { distance 1 mm x on failure { repeat with perturbation 2 times repeat with perturbation 2 times } }
+advanced move c { distance 1 mm x stop if 5 N < force
+  on success { repeat with perturbation 2 times } }
+advanced move d { distance 1 mm x
+  on failure { repeat with perturbation 2 times repeat with perturbation 2 times } }
 advanced move e { distance 1 mm x stop if force > 1 mm succeeds if force }
 sequence main { wait 1 s }
 "#,
         &[
             r#"E0305 1:43 "distance > 1 mm""#,
             r#"E0305 2:43 "force < 1 N""#,
-            r#"E0312 3:68 "repeat with perturbation 2 times""#,
-            r#"E0312 4:81 "repeat with perturbation 2 times""#,
-            r#"E0202 5:51 "1 mm""#,
-            r#"E0201 5:68 "force""#,
+            r#"E0312 4:16 "repeat with perturbation 2 times""#,
+            r#"E0312 6:49 "repeat with perturbation 2 times""#,
+            r#"E0202 7:51 "1 mm""#,
+            r#"E0201 7:68 "force""#,
         ],
     );
 }

@@ -1,11 +1,6 @@
 //! What the code does about errors: where each is due, and how it goes on.
 
-use crate::common::{code, lines, module};
-
-/// That a function of a program becomes this code.
-fn check(source: &str, function: &str, expected: &str) {
-    assert_eq!(code(&module(source), function), lines(expected));
-}
+use crate::common::check_code as check;
 
 #[test]
 fn a_warning_is_noted() {
@@ -161,7 +156,7 @@ fn recover_and_do_the_sequence_again() {
         "
         enter
         push.setting speed
-        store.local $0
+        store.local $speed
         join +22
         push.speed slow
         setting.set speed
@@ -182,12 +177,12 @@ fn recover_and_do_the_sequence_again() {
         jump +6
         land -9
         add.local.imm $rounds 1
-        push.local $0
+        push.local $speed
         setting.set speed
         jump -22
         land -6
         join -11
-        push.local $0
+        push.local $speed
         setting.set speed
         return
         ",
@@ -420,17 +415,17 @@ fn a_caller_leaves_with_its_callee() {
         "
         enter
         push.setting speed
-        store.local $0
+        store.local $speed
         push.speed slow
         setting.set speed
         call inner
         push.global $leaving
         jump.unless +4
-        push.local $0
+        push.local $speed
         setting.set speed
         jump +9
         land -4
-        push.local $0
+        push.local $speed
         setting.set speed
         call inner
         push.global $leaving
@@ -504,7 +499,7 @@ fn a_block_with_a_reverse_is_left_by_its_end() {
         join +39
         block.begin
         push.int 0
-        store.local $way1
+        store.local $way
         sense.holding $0
         push.local $0
         jump.unless +14
@@ -513,13 +508,13 @@ fn a_block_with_a_reverse_is_left_by_its_end() {
         call fix
         error.clear e
         push.int 2
-        store.local $way1
+        store.local $way
         jump +10
         land -6
         push.bool low
         store.global $leaving
         push.int 1
-        store.local $way1
+        store.local $way
         jump +5
         land -14
         push.const 1.0
@@ -527,13 +522,13 @@ fn a_block_with_a_reverse_is_left_by_its_end() {
         join -10
         join -5
         block.skip -24
-        push.local $way1
+        push.local $way
         jump.unless.eq.imm 1 +4
         push.bool high
         store.global $leaving
         jump +11
         land -4
-        push.local $way1
+        push.local $way
         jump.unless.eq.imm 2 +2
         jump +3
         land -2
@@ -543,188 +538,6 @@ fn a_block_with_a_reverse_is_left_by_its_end() {
         jump -39
         land -4
         join -11
-        return
-        ",
-    );
-}
-
-#[test]
-fn an_advanced_move_without_an_aftermath() {
-    check(
-        r"
-        advanced move go { distance 5 mm forward stop if force > 3 N }
-        sequence main { advance go }
-        ",
-        "go",
-        "
-        enter
-        push.const 0.005
-        push.const 3.0
-        move.guarded +z tcp
-        sense.distance $0
-        sense.peak_force $1
-        return
-        ",
-    );
-}
-
-#[test]
-fn an_advanced_move_with_behaviours() {
-    check(
-        r"
-        error e { }
-        advanced move go { distance 5 mm left in base speed slow 
-        succeeds if distance > 3 mm and force < 2 N
-        on success { return to initial position }
-        on failure { throw e } }
-        sequence main { advance go }
-        ",
-        "go",
-        "
-        enter
-        remember $initial
-        push.setting speed
-        store.local $0
-        push.speed slow
-        setting.set speed
-        push.const 0.005
-        push.const 1.7976931348623157e308
-        move.guarded +y base
-        sense.distance $1
-        sense.peak_force $2
-        push.local $0
-        setting.set speed
-        push.const 0.003
-        push.local $1
-        real.lt
-        push.local $2
-        push.const 2.0
-        real.lt
-        bool.and
-        jump.if +3
-        error.raise e
-        jump +3
-        land -3
-        move.slot $initial linear
-        join -3
-        return
-        ",
-    );
-}
-
-#[test]
-fn an_advanced_move_that_is_tried_again() {
-    check(
-        r"
-        error e { }
-        advanced move go { distance 5 mm x
-        on failure { return to initial position repeat with perturbation 2 mm 3 times throw e } }
-        sequence main { advance go }
-        ",
-        "go",
-        "
-        enter
-        remember $initial
-        push.int 0
-        push.int 3
-        for.enter 0 +35
-        for.top 0 +33
-        push.counter 0
-        push.int 0
-        jump.unless.ne +20
-        draw $2
-        draw $3
-        move.slot $initial linear
-        push.const 0.0
-        push.local $2
-        push.const 2.0
-        real.mul
-        push.const 1.0
-        real.sub
-        push.const 0.002
-        real.mul
-        push.local $3
-        push.const 2.0
-        real.mul
-        push.const 1.0
-        real.sub
-        push.const 0.002
-        real.mul
-        move.offset tcp
-        join -20
-        push.const 0.005
-        push.const 1.7976931348623157e308
-        move.guarded +x tcp
-        sense.distance $0
-        sense.peak_force $1
-        push.const 0.004999
-        push.local $0
-        real.le
-        jump.if +5
-        for.next 0 -33
-        for.exit 0 -35
-        move.slot $initial linear
-        error.raise e
-        join -5
-        return
-        ",
-    );
-}
-
-#[test]
-fn a_requirement_traps_or_throws() {
-    check(
-        r"
-        advanced move go { requires holding   and
-         not input 2 distance 1 mm x }
-        sequence main { advance go }
-        ",
-        "go",
-        "
-        enter
-        sense.holding $0
-        sense.input $1 2
-        push.local $0
-        push.local $1
-        bool.not
-        bool.and
-        require go requires holding and not input 2
-        push.const 0.001
-        push.const 1.7976931348623157e308
-        move.guarded +x tcp
-        sense.distance $2
-        sense.peak_force $3
-        return
-        ",
-    );
-}
-
-#[test]
-fn a_requirement_that_fails_throws_what_failure_throws() {
-    check(
-        r"
-        error e { }
-        advanced move go { requires holding distance 1 mm x on failure { throw e } }
-        sequence main { advance go }
-        ",
-        "go",
-        "
-        enter
-        sense.holding $0
-        push.local $0
-        jump.unless +10
-        push.const 0.001
-        push.const 1.7976931348623157e308
-        move.guarded +x tcp
-        sense.distance $1
-        sense.peak_force $2
-        push.const 0.000999
-        push.local $1
-        real.le
-        jump.if +3
-        join -10
-        error.raise e
-        join -3
         return
         ",
     );

@@ -1,11 +1,6 @@
 //! What the words about reversal become.
 
-use crate::common::{code, lines, module};
-
-/// That a function of a program becomes this code.
-fn check(source: &str, function: &str, expected: &str) {
-    assert_eq!(code(&module(source), function), lines(expected));
-}
+use crate::common::check_code as check;
 
 #[test]
 fn a_move_that_is_always_reversible_names_both_ends() {
@@ -32,13 +27,13 @@ fn a_move_that_is_always_reversible_names_both_ends() {
         push.joints b
         move.always joint
         push.setting speed
-        store.local $0
+        store.local $speed
         push.speed slow
         setting.set speed
         push.joints b
         push.joints a
         move.always linear
-        push.local $0
+        push.local $speed
         setting.set speed
         return
         ",
@@ -114,7 +109,7 @@ fn a_replacement_is_a_function_of_its_own() {
         "
         enter
         push.setting speed
-        store.local $0
+        store.local $speed
         push.int 1
         store.local x
         push.speed slow
@@ -127,7 +122,7 @@ fn a_replacement_is_a_function_of_its_own() {
         push.joints a
         move.joint
         join -4
-        push.local $0
+        push.local $speed
         setting.set speed
         return
         ",

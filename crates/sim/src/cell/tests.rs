@@ -1,1 +1,215 @@
+//! What a workcell file may say, and how it is told that it may not.
 
+use super::*;
+use obverse_geometry::tolerance::same_pose;
+
+const LEAST: &str = "[arm]\nhome_rad = [0, -1.5, 1.5, 0, 0, 0]\n";
+
+fn error(more: &str) -> CellError {
+    Cell::parse(&format!("{LEAST}{more}")).expect_err(more)
+}
+
+/// Where the error is in the text after [`LEAST`], and that its message says a word.
+fn expect(more: &str, line: usize, column: usize, word: &str) {
+    let error = error(more);
+    assert_eq!((error.line, error.column), (line + 2, column), "{error}");
+    assert!(error.message.contains(word), "{error}");
+}
+
+#[test]
+fn the_least_cell_has_an_arm_and_defaults() {
+    let cell = Cell::parse(LEAST).unwrap();
+    assert_eq!(cell.arm.home.0, [0.0, -1.5, 1.5, 0.0, 0.0, 0.0]);
+    assert_eq!(cell.arm.limits_rad, [(-TAU, TAU); 6]);
+    assert_eq!(cell.speeds, DEFAULT_SPEEDS);
+    assert_eq!((cell.output_count, cell.inputs.len(), cell.tools.len()), (8, 8, 1));
+    assert_eq!((cell.items.len(), cell.fixtures.len(), cell.gripper), (0, 0, None));
+}
+
+#[test]
+fn units_become_metres_radians_and_newtons() {
+    let cell = Cell::parse(&format!(
+        "{LEAST}
+        [speed]
+        slow = {{ tool_mm_per_s = 20, joint_deg_per_s = 90 }}
+        [contact]
+        stiffness_n_per_mm = 60
+        [[tool]]
+        name = \"hand\"
+        tcp = {{ xyz_mm = [0, 0, 100], rotation_vector_deg = [0, 90, 0] }}
+        body = [{{ cylinder = {{ diameter_mm = 20, length_mm = 50 }} }}]
+        "
+    ))
+    .unwrap();
+    assert_eq!(cell.speeds[1].tool_m_per_s, 0.02);
+    assert_eq!(cell.speeds[1].joint_rad_per_s, PI / 2.0);
+    assert_eq!(cell.speeds[0], DEFAULT_SPEEDS[0]);
+    assert_eq!(cell.contact.stiffness_n_per_m, 60_000.0);
+    let expected = Pose::from_rotation_vector([0.0, 0.0, 0.1], [0.0, PI / 2.0, 0.0]);
+    assert!(same_pose(&cell.tools[0].tcp, &expected));
+    let Shape::Cylinder { diameter_m, length_m } = cell.tools[0].parts[0].shape else {
+        panic!("not a cylinder");
+    };
+    assert_eq!((diameter_m, length_m), (0.02, 0.05));
+}
+
+#[test]
+fn what_was_taught_lies_where_the_gripper_grasps_it() {
+    let cell = Cell::parse(&format!(
+        "{LEAST}
+        [[tool]]
+        name = \"hand\"
+        tcp = {{ xyz_mm = [0, 0, 100] }}
+        [gripper]
+        output = 0
+        near_mm = 1
+        near_deg = 1
+        [[item]]
+        name = \"part\"
+        place = {{ taught_at_rad = [0.1, -1.2, 1.5, 0.2, 0.3, 0.4] }}
+        grasp = {{ xyz_mm = [0, 10, -20], rotation_vector_deg = [0, 0, 45] }}
+        "
+    ))
+    .unwrap();
+    let joints = JointConfiguration([0.1, -1.2, 1.5, 0.2, 0.3, 0.4]);
+    let tcp = crate::kinematics::forward(&joints).compose(&cell.tools[0].tcp);
+    assert!(same_pose(&cell.items[0].pose.compose(&cell.items[0].grasp), &tcp));
+}
+
+#[test]
+fn keys_that_mean_nothing_are_refused_in_place() {
+    expect("colour = 1", 1, 1, "colour");
+    expect("[contact]\nfriction = 0.1\nfrictoin = 0.1", 3, 1, "frictoin");
+    expect("[[item]]\nname = \"a\"\nplace = { xyz_mm = [0, 0, 0], z = 1 }", 3, 31, "z");
+}
+
+#[test]
+fn numbers_out_of_range_are_refused_in_place() {
+    expect("[contact]\nfriction = 1.5", 2, 12, "coefficient of friction");
+    expect("[contact]\nfriction = nan", 2, 12, "NaN");
+    expect("[force_sensor]\nnoise_n = -1", 2, 11, "from 0");
+    expect("[force_sensor]\nsample_s = inf", 2, 12, "sampling time");
+    expect("[force_sensor]\nwindow = 0", 2, 10, "1 to 1000");
+    expect("[outputs]\ncount = 70000", 2, 9, "70000");
+    expect("[outputs]\ncount = 2000", 2, 9, "at most 1024");
+    let body = "[[fixture]]\nname = \"f\"\nplace = {}\nbody = [{ cuboid_mm = [1, -2, 3] }]";
+    expect(body, 4, 23, "a size in mm");
+    let spread = "[[item]]\nname = \"i\"\nplace = {}\noffset = { normal_mm = [0, -1, 0] }";
+    expect(spread, 4, 24, "a spread in mm");
+}
+
+#[test]
+fn limits_must_be_ranges_that_hold_the_home() {
+    let limits = |first: &str| {
+        let others = "[-360, 360], [-360, 360], [-360, 360], [-360, 360], [-360, 360]";
+        format!("[arm]\nhome_rad = [0, 0, 0, 0, 0, 0]\nlimits_deg = [{first}, {others}]")
+    };
+    assert!(Cell::parse(&limits("[-10, 10]")).is_ok());
+    let reversed = Cell::parse(&limits("[10, -10]")).unwrap_err();
+    assert_eq!((reversed.line, reversed.column), (3, 15), "{reversed}");
+    let outside = Cell::parse(&limits("[5, 10]")).unwrap_err();
+    assert_eq!((outside.line, outside.column), (2, 12), "{outside}");
+    assert!(outside.message.contains("joint 1"), "{outside}");
+}
+
+#[test]
+fn names_are_unique_and_of_a_reasonable_length() {
+    let item = |name: &str| format!("[[item]]\nname = \"{name}\"\nplace = {{}}\n");
+    expect(&(item("a") + &item("a")), 5, 8, "taken");
+    expect(&item(""), 2, 8, "1 to 64");
+    expect(&item(&"x".repeat(65)), 2, 8, "65");
+}
+
+#[test]
+fn what_is_named_must_be_there() {
+    let gripper = "[gripper]\ntool = \"hand\"\noutput = 0\nnear_mm = 1\nnear_deg = 1";
+    expect(gripper, 2, 8, "no tool `hand`");
+    expect("[gripper]\noutput = 8\nnear_mm = 1\nnear_deg = 1", 2, 10, "no output 8");
+    let rule = |rule: &str| format!("[inputs]\ncount = 2\nrule = [\n{rule}\n]");
+    expect(&rule("{ input = 2, level = \"low\" }"), 4, 11, "no input 2");
+    expect(&rule("{ input = 0, follows_output = 9 }"), 4, 31, "no output 9");
+}
+
+#[test]
+fn an_input_has_one_rule_of_one_kind() {
+    let rule = |rule: &str| format!("[inputs]\ncount = 2\nrule = [\n{rule}\n]");
+    expect(&rule("{ input = 0 }"), 4, 11, "one of");
+    expect(&rule("{ input = 0, level = \"low\", holding = true }"), 4, 11, "one of");
+    expect(&rule("{ input = 0, holding = true, delay_s = 1 }"), 4, 40, "delay");
+    let twice = "{ input = 0, holding = true },\n{ input = 0, holding = true }";
+    expect(&rule(twice), 5, 11, "already");
+    let back = "{ at_s = 2, level = \"high\" }, { at_s = 1, level = \"low\" }";
+    let changes = format!("{{ input = 0, changes = [{back}] }}");
+    expect(&rule(&changes), 4, 64, "increase");
+}
+
+#[test]
+fn a_part_is_a_box_or_a_cylinder() {
+    let part = |part: &str| format!("[[fixture]]\nname = \"f\"\nplace = {{}}\nbody = [{part}]");
+    expect(&part("{}"), 4, 9, "one of");
+    let both = "{ cuboid_mm = [1, 1, 1], cylinder = { diameter_mm = 1, length_mm = 1 } }";
+    expect(&part(both), 4, 9, "one of");
+    let many = "{ cuboid_mm = [1, 1, 1] }, ".repeat(65);
+    let error = error(&part(&many));
+    assert!(error.message.contains("at most 64"), "{error}");
+}
+
+#[test]
+fn a_hole_is_drilled_straight_into_a_face() {
+    let hole = |hole: &str| {
+        format!(
+            "[[fixture]]\nname = \"f\"\nplace = {{}}\nbody = [{{ cuboid_mm = [50, 50, 40] }}]\n\
+             hole = [{hole}]"
+        )
+    };
+    let down = "rotation_vector_deg = [180, 0, 0]";
+    let parse = |text: &str| Cell::parse(&format!("{LEAST}{}", hole(text)));
+    let good =
+        format!("{{ mouth = {{ xyz_mm = [0, 0, 20], {down} }}, diameter_mm = 20, depth_mm = 30 }}");
+    assert_eq!(parse(&good).unwrap().fixtures[0].holes[0].part, 0);
+    for bad in [
+        // In the air, the wrong way round, through the part, too near to the edge, slanted.
+        good.replace("[0, 0, 20]", "[0, 0, 21]"),
+        good.replace("180", "0"),
+        good.replace("depth_mm = 30", "depth_mm = 40"),
+        good.replace("[0, 0, 20]", "[16, 0, 20]"),
+        good.replace("180", "175"),
+    ] {
+        let error = parse(&bad).expect_err(&bad);
+        assert_eq!((error.line, error.column), (7, 9), "{error}");
+    }
+}
+
+#[test]
+fn a_peg_keeps_some_of_its_end() {
+    let peg = "[[item]]\nname = \"p\"\nplace = {}\n\
+               peg = { diameter_mm = 10, length_mm = 30, chamfer_mm = 5 }";
+    expect(peg, 4, 56, "the whole tip");
+}
+
+#[test]
+fn the_stop_force_is_within_what_bodies_give() {
+    expect("[contact]\nstiffness_n_per_mm = 10\nstop_force_n = 20", 3, 16, "8 N");
+    let soft = format!("{LEAST}[contact]\nstiffness_n_per_mm = 10");
+    assert_eq!(Cell::parse(&soft).unwrap().contact.stop_force_n, 8.0);
+}
+
+#[test]
+fn hostile_files_are_refused_without_harm() {
+    assert!(Cell::parse(&"#".repeat(FILE_BYTES_MAX + 1)).is_err());
+    assert!(Cell::parse(&format!("x = {}", "[".repeat(100_000))).is_err());
+    assert!(Cell::parse(&format!("x = {}", "{a=".repeat(100_000))).is_err());
+    for text in ["", "\u{0}", "[arm", "arm = 1", "[arm]\nhome_rad = [1]", "[arm]\nhome_rad = 'é"] {
+        let error = Cell::parse(text).expect_err(text);
+        assert!(error.line >= 1 && error.column >= 1);
+    }
+    let items: String = (0..1_001)
+        .map(|number| format!("[[item]]\nname = \"i{number}\"\nplace = {{}}\n"))
+        .collect();
+    assert!(error(&items).message.contains("at most 1000"));
+}
+
+#[test]
+fn columns_count_characters() {
+    expect("[[item]]\nname = \"é\" # é\nplace = { xyz_mm = [\"ü\", 0, 0] }", 3, 21, "invalid");
+}

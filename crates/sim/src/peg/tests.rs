@@ -1,4 +1,4 @@
-//! The stages of an insertion and the boundaries between them, against closed forms and brute force.
+//! The stages of an insertion and where they change, against closed forms and brute force.
 
 use super::*;
 use crate::random::{Stream, signed, unit};
@@ -29,10 +29,6 @@ fn tilted(tilt_rad: f64, depth_mm: f64) -> Held {
         tip_mm: Vector3::new(sin, 0.0, cos) * (depth_mm / cos),
         axis: Vector3::new(sin, 0.0, cos),
     }
-}
-
-fn axial(held: Held) -> f64 {
-    FIT.contact(&held).axial_n
 }
 
 #[test]

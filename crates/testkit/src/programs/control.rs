@@ -27,7 +27,7 @@ impl Generator<'_, '_> {
         if self.frame.nesting >= MAX_NESTING {
             return self.motion();
         }
-        match self.below(14)? {
+        match self.below(15)? {
             0..=2 => self.branch(),
             3 => self.chain(),
             4 => self.asserted_branch(),
@@ -37,7 +37,7 @@ impl Generator<'_, '_> {
             8 => self.endless(),
             9 => self.scoped(),
             10 => self.way_out(),
-            11 => self.throw(),
+            11 | 14 => self.throw(),
             12 if self.may_be_irreversible() => self.irreversible(),
             13 if self.options.allow_overrides => self.reversed(),
             _ => self.branch(),
@@ -63,7 +63,6 @@ impl Generator<'_, '_> {
     /// `if … else if … else …`
     fn chain(&mut self) -> Result<()> {
         let first = self.expression(Type::Bool)?;
-        // What a later condition reads is read within the block before it.
         let second = self.expression(Type::Bool)?;
         self.frame.knows_position = false;
         self.open(&format!("if {first}"));
@@ -249,7 +248,6 @@ impl Generator<'_, '_> {
 
     /// A setting for a block.
     fn scoped(&mut self) -> Result<()> {
-        self.frame.had_scope = true;
         let setting = self.setting()?;
         self.open(&setting);
         self.block(4)?;

@@ -267,8 +267,8 @@ impl Generator<'_, '_> {
 
     fn error_clauses(&mut self, using: &[String]) -> Result<()> {
         let respond =
-            self.choose(&["after current action", "at once", "after current sequence"])?;
-        if self.one_in(2)? {
+            self.choose(&["after current sequence", "at once", "after current action"])?;
+        if !self.one_in(3)? {
             self.line(&format!("respond {respond}"));
         }
         match self.below(6)? {

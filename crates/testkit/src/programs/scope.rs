@@ -88,8 +88,6 @@ pub(super) struct Frame {
     pub(super) has_barrier: bool,
     /// Whether readings of the outside may stand in expressions.
     pub(super) may_read: bool,
-    /// TEMPORARY
-    pub(super) had_scope: bool,
 }
 
 impl Frame {

@@ -40,7 +40,7 @@ impl Generator<'_, '_> {
     pub(super) fn variable(&mut self) -> Result<()> {
         let of_type = self.choose(&Type::OF_VARIABLES)?;
         let name = self.name("v");
-        let value = self.first_value(of_type)?;
+        let value = self.bounded(of_type)?;
         let declared = match of_type {
             Type::Number if self.one_in(3)? => {
                 // An integer that is written out is a number where one is declared.
@@ -54,10 +54,6 @@ impl Generator<'_, '_> {
         self.line(&format!("var {name}{declared} = {value}"));
         self.declare(&name, of_type, true);
         Ok(())
-    }
-
-    fn first_value(&mut self, of_type: Type) -> Result<String> {
-        self.bounded(of_type)
     }
 
     /// `x = …`
@@ -124,9 +120,6 @@ impl Generator<'_, '_> {
 
     /// A setting to the end of the sequence.
     fn modal(&mut self) -> Result<()> {
-        if self.frame.had_scope {
-            return self.motion();
-        }
         let setting = self.setting()?;
         self.line(&setting);
         Ok(())

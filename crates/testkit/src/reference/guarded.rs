@@ -12,7 +12,7 @@ use obverse_syntax::span::Spanned;
 use obverse_workcell::{Goal, Path};
 
 /// A move that came closer than this to its distance has come all the way, in metres.
-const SHORTFALL_M: f64 = 1e6;
+const SHORTFALL_M: f64 = 1e-6;
 /// How far to the side a move is tried again where nothing is said, in metres.
 const PERTURBATION_M: f64 = 1e-3;
 

@@ -27,8 +27,13 @@ pub(crate) struct Course<'c, 'v, 'a> {
 
 impl Course<'_, '_, '_> {
     #[inline(always)]
-    fn int(&self, at: usize) -> i64 {
-        self.variables.operand(at).cast_signed()
+    fn top(&self) -> i64 {
+        self.variables.top().cast_signed()
+    }
+
+    #[inline(always)]
+    fn below(&self) -> i64 {
+        self.variables.below().cast_signed()
     }
 
     #[inline(always)]
@@ -65,13 +70,13 @@ macro_rules! jumps {
 
 jumps! {
     Jump(_op, course) unless false;
-    JumpIf(_op, course) unless course.variables.operand(0) == 0;
-    JumpUnless(_op, course) unless course.variables.operand(0) != 0;
-    JumpUnlessLt(_op, course) unless course.int(0) < course.int(1);
-    JumpUnlessLe(_op, course) unless course.int(0) <= course.int(1);
-    JumpUnlessEq(_op, course) unless course.int(0) == course.int(1);
-    JumpUnlessNe(_op, course) unless course.int(0) != course.int(1);
-    JumpUnlessEqImmediate(op, course) unless course.int(0) == i64::from(op.value);
+    JumpIf(_op, course) unless course.variables.top() == 0;
+    JumpUnless(_op, course) unless course.variables.top() != 0;
+    JumpUnlessLt(_op, course) unless course.below() < course.top();
+    JumpUnlessLe(_op, course) unless course.below() <= course.top();
+    JumpUnlessEq(_op, course) unless course.below() == course.top();
+    JumpUnlessNe(_op, course) unless course.below() != course.top();
+    JumpUnlessEqImmediate(op, course) unless course.top() == i64::from(op.value);
     JumpUnlessLocalLtImmediate(op, course) unless course.local(op.local) < i64::from(op.value);
     JumpUnlessLocalLtLocal(op, course) unless course.local(op.left) < course.local(op.right);
 }
@@ -115,7 +120,7 @@ impl AfterForward<Course<'_, '_, '_>> for op::Join {
 impl Always<Course<'_, '_, '_>> for op::JoinAssert {
     #[inline(always)]
     fn forward(self, course: &mut Course<'_, '_, '_>) -> Result<(), Failure> {
-        if course.variables.operand(0) != 0 {
+        if course.variables.top() != 0 {
             return Err(TrapKind::Assertion { by_jump: false }.into());
         }
         Ok(())
@@ -123,7 +128,7 @@ impl Always<Course<'_, '_, '_>> for op::JoinAssert {
 
     #[inline(always)]
     fn reverse(self, course: &mut Course<'_, '_, '_>) -> Result<(), Failure> {
-        if course.variables.operand(0) != 0 {
+        if course.variables.top() != 0 {
             course.way = Way::Named(self.from);
         }
         Ok(())
@@ -178,7 +183,7 @@ impl AfterForward<Course<'_, '_, '_>> for op::ForEnter {
 
     #[inline(always)]
     fn forward(self, course: &mut Course<'_, '_, '_>, _: &Counter) -> Result<(), Failure> {
-        let (first, last) = (course.variables.operand(0), course.variables.operand(1));
+        let (first, last) = (course.variables.below(), course.variables.top());
         Count::of(course, self.counter).set([first, last, first]);
         course.go_unless(first.cast_signed() <= last.cast_signed(), self.exit);
         Ok(())

@@ -19,29 +19,57 @@ macro_rules! pure {
     )*};
 }
 
+/// What a word on the stack is, by type.
+fn int(word: u64) -> i64 {
+    word.cast_signed()
+}
+
+fn real(word: u64) -> f64 {
+    f64::from_bits(word)
+}
+
+fn bool(word: u64) -> bool {
+    word != 0
+}
+
+fn of_int(value: i64) -> u64 {
+    value.cast_unsigned()
+}
+
+fn of_real(value: f64) -> u64 {
+    value.to_bits()
+}
+
+fn of_bool(value: bool) -> u64 {
+    u64::from(value)
+}
+
 /// Opcodes that take two values of a type and leave one: `Op(a, b) => value`.
 macro_rules! binary {
-    ($pop:ident, $push:ident: $($op:ident($a:ident, $b:ident) => $value:expr;)*) => {$(
+    ($from:ident -> $to:ident: $($op:ident($a:ident, $b:ident) => $value:expr;)*) => {$(
         impl Pure for op::$op {
             #[inline(always)]
             fn run(self, values: &mut Values<'_>) -> Result<(), TrapKind> {
-                let $b = values.$pop();
-                let $a = values.$pop();
-                values.$push($value);
+                values.binary(|a, b| {
+                    let ($a, $b) = ($from(a), $from(b));
+                    $to($value)
+                });
                 Ok(())
             }
         }
     )*};
 }
 
-/// Opcodes that take one value and leave one: `Op(a) => value`.
+/// Opcodes that take one value and leave one: `Op: from -> to, (a) => value`.
 macro_rules! unary {
-    ($($op:ident, $pop:ident($a:ident) => $push:ident($value:expr);)*) => {$(
+    ($($op:ident: $from:ident -> $to:ident, ($a:ident) => $value:expr;)*) => {$(
         impl Pure for op::$op {
             #[inline(always)]
             fn run(self, values: &mut Values<'_>) -> Result<(), TrapKind> {
-                let $a = values.$pop();
-                values.$push($value);
+                values.unary(|a| {
+                    let $a = $from(a);
+                    $to($value)
+                });
                 Ok(())
             }
         }
@@ -65,23 +93,21 @@ pure! {
         values.push(values.local(left).wrapping_add(values.local(right)))
     };
     IntAddLocal { local }, values => {
-        let sum = values.pop().wrapping_add(values.local(local));
-        values.push(sum);
+        let term = values.local(local);
+        values.unary(|top| top.wrapping_add(term));
     };
     IntAddImmediate { value }, values => {
-        let sum = values.pop_int().wrapping_add(i64::from(value));
-        values.push_int(sum);
+        values.unary(|top| of_int(int(top).wrapping_add(i64::from(value))))
     };
     IntMulImmediate { value }, values => {
-        let product = values.pop_int().wrapping_mul(i64::from(value));
-        values.push_int(product);
+        values.unary(|top| of_int(int(top).wrapping_mul(i64::from(value))))
     };
     IntMulLocalImmediate { local, value }, values => {
         values.push_int(values.local(local).cast_signed().wrapping_mul(i64::from(value)))
     };
 }
 
-binary! { pop_int, push_int:
+binary! { int -> of_int:
     IntAdd(a, b) => a.wrapping_add(b);
     IntSub(a, b) => a.wrapping_sub(b);
     IntMul(a, b) => a.wrapping_mul(b);
@@ -89,14 +115,14 @@ binary! { pop_int, push_int:
     IntMax(a, b) => a.max(b);
 }
 
-binary! { pop_int, push_bool:
+binary! { int -> of_bool:
     IntLt(a, b) => a < b;
     IntLe(a, b) => a <= b;
     IntEq(a, b) => a == b;
     IntNe(a, b) => a != b;
 }
 
-binary! { pop_real, push_real:
+binary! { real -> of_real:
     RealAdd(a, b) => a + b;
     RealSub(a, b) => a - b;
     RealMul(a, b) => a * b;
@@ -106,98 +132,96 @@ binary! { pop_real, push_real:
     RealMax(a, b) => if a > b || b.is_nan() { a } else { b };
 }
 
-binary! { pop_real, push_bool:
+binary! { real -> of_bool:
     RealLt(a, b) => a < b;
     RealLe(a, b) => a <= b;
     RealEq(a, b) => a == b;
     RealNe(a, b) => a != b;
 }
 
-binary! { pop_bool, push_bool:
+binary! { bool -> of_bool:
     BoolAnd(a, b) => a & b;
     BoolOr(a, b) => a | b;
     BoolEq(a, b) => a == b;
 }
 
 unary! {
-    IntNeg, pop_int(a) => push_int(a.wrapping_neg());
-    IntAbs, pop_int(a) => push_int(a.wrapping_abs());
-    RealNeg, pop_real(a) => push_real(-a);
-    RealAbs, pop_real(a) => push_real(a.abs());
-    RealSqrt, pop_real(a) => push_real(a.sqrt());
-    IntToReal, pop_int(a) => push_real(a as f64);
-    BoolNot, pop_bool(a) => push_bool(!a);
+    IntNeg: int -> of_int, (a) => a.wrapping_neg();
+    IntAbs: int -> of_int, (a) => a.wrapping_abs();
+    RealNeg: real -> of_real, (a) => -a;
+    RealAbs: real -> of_real, (a) => a.abs();
+    RealSqrt: real -> of_real, (a) => a.sqrt();
+    IntToReal: int -> of_real, (a) => a as f64;
+    BoolNot: bool -> of_bool, (a) => !a;
 }
 
 impl Pure for op::IntDiv {
     #[inline(always)]
     fn run(self, values: &mut Values<'_>) -> Result<(), TrapKind> {
-        let divisor = values.pop_int();
-        let dividend = values.pop_int();
-        if divisor == 0 {
+        if values.top() == 0 {
             return Err(TrapKind::DivisionByZero);
         }
-        values.push_int(dividend.wrapping_div(divisor));
+        values.binary(|dividend, divisor| of_int(int(dividend).wrapping_div(int(divisor))));
         Ok(())
     }
 }
 
+/// Half the cost where both fit 32 bits, which is nearly always; the divisor is not zero.
 #[inline(always)]
-fn push_remainder(values: &mut Values<'_>, dividend: i64, divisor: i64) -> Result<(), TrapKind> {
-    if divisor == 0 {
-        return Err(TrapKind::DivisionByZero);
-    }
-    // Half the cost where both fit 32 bits, which is nearly always.
-    let remainder = match (u32::try_from(dividend), u32::try_from(divisor)) {
-        (Ok(dividend), Ok(divisor)) => i64::from(dividend % divisor),
+fn remainder(dividend: i64, divisor: i64) -> u64 {
+    of_int(match (u32::try_from(dividend), u32::try_from(divisor)) {
+        (Ok(dividend), Ok(divisor)) if divisor != 0 => i64::from(dividend % divisor),
         _ => dividend.wrapping_rem(divisor),
-    };
-    values.push_int(remainder);
-    Ok(())
+    })
 }
 
 impl Pure for op::IntRem {
     #[inline(always)]
     fn run(self, values: &mut Values<'_>) -> Result<(), TrapKind> {
-        let divisor = values.pop_int();
-        let dividend = values.pop_int();
-        push_remainder(values, dividend, divisor)
+        if values.top() == 0 {
+            return Err(TrapKind::DivisionByZero);
+        }
+        values.binary(|dividend, divisor| remainder(int(dividend), int(divisor)));
+        Ok(())
     }
 }
 
-impl Pure for op::IntRemImmediate {
-    #[inline(always)]
-    fn run(self, values: &mut Values<'_>) -> Result<(), TrapKind> {
-        let dividend = values.pop_int();
-        push_remainder(values, dividend, i64::from(self.value))
-    }
+/// Remainders by a small integer: what is divided, and how it is put on the stack.
+macro_rules! remainders {
+    ($($op:ident($this:ident, $values:ident) $put:ident $dividend:expr;)*) => {$(
+        impl Pure for op::$op {
+            #[inline(always)]
+            fn run(self, $values: &mut Values<'_>) -> Result<(), TrapKind> {
+                let $this = self;
+                let _ = $this;
+                if self.value == 0 {
+                    return Err(TrapKind::DivisionByZero);
+                }
+                let left = remainder($dividend, i64::from(self.value));
+                remainders!(@ $put $values, left);
+                Ok(())
+            }
+        }
+    )*};
+    (@ push $values:ident, $left:ident) => { $values.push($left) };
+    (@ replace $values:ident, $left:ident) => { $values.unary(|_| $left) };
 }
 
-impl Pure for op::IntRemLocalImmediate {
-    #[inline(always)]
-    fn run(self, values: &mut Values<'_>) -> Result<(), TrapKind> {
-        let dividend = values.local(self.local).cast_signed();
-        push_remainder(values, dividend, i64::from(self.value))
-    }
-}
-
-impl Pure for op::IntRemCounterImmediate {
-    #[inline(always)]
-    fn run(self, values: &mut Values<'_>) -> Result<(), TrapKind> {
-        let dividend = values.counter(self.counter);
-        push_remainder(values, dividend, i64::from(self.value))
-    }
+remainders! {
+    IntRemImmediate(_op, values) replace int(values.top());
+    IntRemLocalImmediate(op, values) push int(values.local(op.local));
+    IntRemCounterImmediate(op, values) push values.counter(op.counter);
 }
 
 impl Pure for op::RealToInt {
     #[inline(always)]
     fn run(self, values: &mut Values<'_>) -> Result<(), TrapKind> {
         const LIMIT: f64 = 9_223_372_036_854_775_808.0;
-        let value = values.pop_real().trunc();
+        let value = real(values.top()).trunc();
         if !(-LIMIT..LIMIT).contains(&value) {
             return Err(TrapKind::NotAnInteger);
         }
-        values.push_int(value as i64);
+        values.unary(|_| of_int(value as i64));
         Ok(())
     }
 }

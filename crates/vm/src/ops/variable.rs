@@ -16,7 +16,7 @@ impl AfterForward<Variables<'_, '_>> for op::StoreLocal {
 
     #[inline(always)]
     fn forward(self, variables: &mut Variables<'_, '_>, _: &Word) -> Result<(), Failure> {
-        *variables.local(self.local) = variables.operand(0);
+        *variables.local(self.local) = variables.top();
         Ok(())
     }
 
@@ -37,7 +37,7 @@ impl AfterForward<Variables<'_, '_>> for op::StoreGlobal {
 
     #[inline(always)]
     fn forward(self, variables: &mut Variables<'_, '_>, _: &Word) -> Result<(), Failure> {
-        *variables.global(self.global) = variables.operand(0);
+        *variables.global(self.global) = variables.top();
         Ok(())
     }
 
@@ -76,13 +76,13 @@ macro_rules! updates {
 
 updates! {
     AddLocal(op, variables)
-        variables.local(op.local), variables.operand(0), wrapping_add / wrapping_sub;
+        variables.local(op.local), variables.top(), wrapping_add / wrapping_sub;
     SubLocal(op, variables)
-        variables.local(op.local), variables.operand(0), wrapping_sub / wrapping_add;
+        variables.local(op.local), variables.top(), wrapping_sub / wrapping_add;
     AddGlobal(op, variables)
-        variables.global(op.global), variables.operand(0), wrapping_add / wrapping_sub;
+        variables.global(op.global), variables.top(), wrapping_add / wrapping_sub;
     SubGlobal(op, variables)
-        variables.global(op.global), variables.operand(0), wrapping_sub / wrapping_add;
+        variables.global(op.global), variables.top(), wrapping_sub / wrapping_add;
     AddLocalImmediate(op, variables)
         variables.local(op.local), i64::from(op.value).cast_unsigned(), wrapping_add / wrapping_sub;
     AddLocalLocal(op, variables)

@@ -142,6 +142,8 @@ fn rule_4_types_fit() {
         ),
     ] {
         refuses(line, Rule::Statements, pc, why);
+        // What follows from it is not told as well.
+        assert_eq!(verify(start(line)).map_err(|errors| errors.len()).err(), Some(1), "{line}");
     }
 }
 
@@ -176,6 +178,7 @@ fn rule_4_variables_that_are_read_without_a_push_have_types() {
         ("push.const 0.5\n wait.input r, 0, low", "wait.input needs bool, and `r` is real"),
     ] {
         refuses(line, Rule::Statements, 2, why);
+        assert_eq!(verify(start(line)).map_err(|errors| errors.len()).err(), Some(1), "{line}");
     }
 }
 

@@ -96,6 +96,7 @@ fn rule_6_loops_have_their_order() {
         .replace("add.local.imm n, 1", "a: block.begin")
         .replace("d: for", "block.skip a\nd: for");
     refused_among(&inside, Rule::Loops, 6, next);
+    refused_among("for.next 0, #2\n for.exit 0, #1", Rule::Loops, 1, next);
 }
 
 #[test]

@@ -95,6 +95,7 @@ fn rule_1_errors_name_what_is_there() {
         refused(build(&clause), Rule::Tables, None, senseless);
     }
     accepted(build(".recover reversing learned sequence perturbed 0"));
+    accepted(build(".recover reversing fixed checkpoint #0"));
 }
 
 #[test]
