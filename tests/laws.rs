@@ -1,18 +1,19 @@
 //! The laws of the machine over generated modules: there and back, runs are steps, parsimony, write
-//! ahead, barrier, blocks, round trips. `LAW_RUNS` sets how many modules each law sees; a failure
-//! prints the number of the module, and `LAW_SEED` runs that one alone.
+//! ahead, barrier, blocks, round trips; and those of compiler and machine together over generated
+//! source programs, against the reference interpreter. `LAW_RUNS` sets how many programs each law
+//! sees; a failure prints the number of the program, and `LAW_SEED` runs that one alone.
 
 use arbitrary::{Result, Unstructured};
-use obverse_testkit::machine_laws;
+use obverse_testkit::{laws, machine_laws};
 use std::collections::BTreeSet;
 
 /// How many modules each law sees.
-const RUNS: u64 = 1_500;
+const RUNS: u64 = 4_000;
 
 /// Random bytes that follow from a number.
 fn bytes(seed: u64) -> Vec<u8> {
     let mut state = seed.wrapping_mul(0x9e37_79b9_7f4a_7c15) ^ 0xd1b5_4a32_d192_ed03;
-    let length = 64 + seed % 1500;
+    let length = 64 + seed % 3000;
     let mut next = || {
         state = state.wrapping_add(0x9e37_79b9_7f4a_7c15);
         let mut x = (state ^ state >> 30).wrapping_mul(0xbf58_476d_1ce4_e5b9);
@@ -35,15 +36,18 @@ fn holds(name: &str, law: fn(&mut Unstructured<'_>) -> Result<()>) {
 }
 
 macro_rules! laws {
-    ($($name:ident)*) => {$(
+    ($($module:ident: $($name:ident)*;)*) => {$($(
         #[test]
         fn $name() {
-            holds(stringify!($name), machine_laws::$name);
+            holds(stringify!($name), $module::$name);
         }
-    )*};
+    )*)*};
 }
 
-laws! { there_and_back runs_are_steps parsimony write_ahead barrier blocks round_trips }
+laws! {
+    machine_laws: there_and_back runs_are_steps parsimony write_ahead barrier blocks round_trips;
+    laws: compiles agrees_forward agrees_backward;
+}
 
 #[test]
 fn every_opcode_occurs_in_generated_modules() {

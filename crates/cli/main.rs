@@ -1,10 +1,11 @@
 //! The command line of Obverse: the only crate that prints, exits and reads the environment.
 //!
 //! Each command stands in a file of its own under `commands`; [`load`] brings programs and workcells
-//! from files, [`story`] tells a run to people, [`report`] to machines, [`show`] shows diagnostics.
+//! from files, [`story`] tells a run to people, [`report`] to machines, [`show`] shows a [`problem`].
 
 mod commands;
 mod load;
+mod problem;
 mod report;
 mod show;
 mod story;
@@ -25,8 +26,9 @@ const EXIT_CODES: &str = "\
 Exit codes:
   0  done; for `run`, the program ended with no error pending; for `back`, the run went back
      as far as the program lets it
-  1  the run ended otherwise: an error nothing dealt with, a fault of the workcell, a trap, the limit
-  2  the input is wrong: command line, source, module, tape, workcell file; nothing was run";
+  1  the run ended otherwise: an error pending, a fault of the workcell, a trap, the limit
+  2  the input is wrong (command line, source, module, tape, workcell file), and nothing was run;
+     or the output cannot be written";
 
 #[derive(Subcommand)]
 enum Command {
@@ -55,6 +57,8 @@ enum Outcome {
     Done,
     /// Exit code 1.
     EndedOtherwise,
+    /// Exit code 2, with everything said already.
+    Wrong,
 }
 
 fn main() -> ExitCode {
@@ -72,6 +76,7 @@ fn main() -> ExitCode {
     match outcome {
         Ok(Outcome::Done) => ExitCode::SUCCESS,
         Ok(Outcome::EndedOtherwise) => ExitCode::from(1),
+        Ok(Outcome::Wrong) => ExitCode::from(2),
         Err(problem) => {
             show::problem(&problem);
             ExitCode::from(2)

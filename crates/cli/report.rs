@@ -4,7 +4,7 @@ use crate::story;
 use crate::write;
 use obverse_bytecode::Module;
 use obverse_recovery::Ending;
-use obverse_vm::{Direction, Event, Machine, Observer};
+use obverse_vm::{Direction, Event, Machine, Observer, Trap, TrapKind};
 use obverse_workcell::{MotionEnd, Workcell};
 use serde_json::{Map, Value, json};
 
@@ -26,6 +26,7 @@ impl Observer for Report<'_> {
             "direction": direction(event.direction),
             "instruction": event.pc,
             "opcode": event.instr.info().mnemonic,
+            "text": story::said(self.module, event.pc),
             "class": event.instr.info().class.name(),
             "calls": event.frames,
             "time_s": cell.now_s(),
@@ -90,6 +91,13 @@ pub(crate) fn place(module: &Module, pc: Option<u32>) -> Value {
     object
 }
 
+/// The errors that are pending, by name.
+pub(crate) fn pending(machine: &Machine<'_>) -> Value {
+    let errors = &machine.program().module().errors;
+    let names = machine.state().raised().iter().map(|error| errors[error.index()].name.as_str());
+    names.collect()
+}
+
 /// The instruction that an ending is about.
 pub(crate) fn ending_pc(ending: &Ending) -> Option<u32> {
     match ending {
@@ -102,42 +110,51 @@ pub(crate) fn ending_pc(ending: &Ending) -> Option<u32> {
 
 /// An ending in words, with its place and what to do.
 pub(crate) fn ending_words(module: &Module, ending: &Ending) -> String {
-    let at = ending_pc(ending).and_then(|pc| {
-        let (file, line, _) = module.place_of(pc)?;
-        Some(format!("{file}:{line} `{}`", story::said(module, pc)))
-    });
-    let at = at.or_else(|| ending_pc(ending).map(|pc| format!("instruction {pc}")));
-    let at = at.unwrap_or_default();
     match ending {
         Ending::Finished => "finished".to_owned(),
         Ending::Unhandled(errors) => {
             let names: Vec<&str> =
                 errors.iter().map(|error| module.errors[error.index()].name.as_str()).collect();
-            format!("stopped: nothing dealt with error {}", names.join(", "))
+            format!("stopped by error {}", names.join(", "))
         }
         Ending::AtStart => "back at the start".to_owned(),
-        Ending::Budget => "stopped: the limit of instructions is reached".to_owned(),
+        Ending::Budget => "stopped at the limit of instructions; `--limit` sets another".to_owned(),
         Ending::Refused(refusal) => {
             let reason = refusal.reason.and_then(|reason| module.reasons.get(reason.index()));
             let why = reason.map_or(refusal.why, String::as_str);
-            format!("cannot go back past {at}: {why}")
+            format!("cannot go back past {}: {why}", line_of(module, refusal.pc))
         }
-        Ending::Fault { fault, direction, .. } => {
-            let way = match direction {
-                Direction::Forward => "",
-                Direction::Reverse => "going back over ",
-            };
-            format!("fault: {way}{at}: {fault}")
+        Ending::Fault { fault, direction: Direction::Forward, pc } => {
+            format!("fault: {}: {fault}", statement(module, *pc))
+        }
+        Ending::Fault { fault, direction: Direction::Reverse, pc } => {
+            format!("fault: going back over {}: {fault}", statement(module, *pc))
         }
         Ending::Trap(trap) => {
-            let reason = match trap.kind {
-                obverse_vm::TrapKind::Required(reason) => {
-                    module.reasons.get(reason.index()).cloned()
-                }
-                _ => None,
-            };
-            let why = reason.unwrap_or_else(|| trap.kind.to_string());
-            format!("trap: {at}: {why}")
+            format!("trap: {}: {}", statement(module, trap.pc), why(module, trap))
         }
     }
+}
+
+/// Where an instruction was written: `peg_in_hole.obv:42`.
+fn line_of(module: &Module, pc: u32) -> String {
+    let place = module.place_of(pc);
+    place.map_or_else(|| format!("instruction {pc}"), |(file, line, _)| format!("{file}:{line}"))
+}
+
+/// Where an instruction was written, and what stands there.
+fn statement(module: &Module, pc: u32) -> String {
+    format!("{} `{}`", line_of(module, pc), story::said(module, pc))
+}
+
+fn why(module: &Module, trap: &Trap) -> String {
+    let reason = match trap.kind {
+        // Which of its truth values the code asks for is of no interest to who wrote it.
+        TrapKind::Assertion { .. } => {
+            return "this assertion contradicts the way that led here".to_owned();
+        }
+        TrapKind::Required(reason) => module.reasons.get(reason.index()).cloned(),
+        _ => None,
+    };
+    reason.unwrap_or_else(|| trap.kind.to_string())
 }

@@ -1,67 +1,52 @@
-//! Diagnostics and other problems, shown to people on standard error.
+//! Diagnostics and other problems: for people on standard error, for machines as JSON.
 
+use crate::problem::{Diagnosed, Message, Problem};
 use ariadne::{CharSet, Color, Config, IndexType, Label, Report, ReportKind, Source};
 use obverse_syntax::diagnostic::{Diagnostic, Severity};
+use obverse_syntax::source::LineIndex;
+use obverse_syntax::span::Span;
+use serde_json::{Value, json};
 use std::io::{IsTerminal, Write};
-
-/// Why a command was not carried out.
-#[derive(Debug)]
-pub(crate) struct Problem {
-    /// What is wrong, one message a line; places first.
-    messages: Vec<String>,
-    /// Diagnostics of a source text.
-    source: Option<(String, String, Vec<Diagnostic>)>,
-}
-
-impl Problem {
-    /// One message.
-    pub(crate) fn new(message: impl Into<String>) -> Self {
-        Self { messages: vec![message.into()], source: None }
-    }
-
-    /// Several messages.
-    pub(crate) fn several(messages: Vec<String>) -> Self {
-        Self { messages, source: None }
-    }
-
-    /// What is wrong with a source text.
-    pub(crate) fn in_source(name: &str, text: &str, diagnostics: Vec<Diagnostic>) -> Self {
-        let source = Some((name.to_owned(), text.to_owned(), diagnostics));
-        Self { messages: Vec::new(), source }
-    }
-}
 
 /// Show why a command was not carried out.
 pub(crate) fn problem(problem: &Problem) {
-    if let Some((name, text, all)) = &problem.source {
-        diagnostics(name, text, all);
+    if let Some(diagnosed) = &problem.source {
+        diagnostics(diagnosed);
     }
-    let mut text = String::new();
-    for message in &problem.messages {
-        text.push_str(&format!("error: {message}\n"));
-    }
-    to_stderr(text.as_bytes());
+    let messages: Vec<String> =
+        problem.messages.iter().map(|message| format!("error: {message}\n")).collect();
+    to_stderr(messages.concat().as_bytes());
 }
 
 /// Show the diagnostics of a source text, and how many there are.
-pub(crate) fn diagnostics(name: &str, text: &str, diagnostics: &[Diagnostic]) {
+pub(crate) fn diagnostics(diagnosed: &Diagnosed) {
     let mut shown = Vec::new();
     let is_terminal = std::io::stderr().is_terminal();
-    for diagnostic in diagnostics {
-        render(name, text, diagnostic, is_terminal, &mut shown);
+    for diagnostic in &diagnosed.diagnostics {
+        render(&diagnosed.name, &diagnosed.text, diagnostic, is_terminal, &mut shown);
     }
-    let count = |severity| diagnostics.iter().filter(|one| one.severity == severity).count();
-    let (errors, warnings) = (count(Severity::Error), count(Severity::Warning));
-    let words = [(errors, "error"), (warnings, "warning")];
-    let total: Vec<String> = words
+    let total = counted(&diagnosed.diagnostics);
+    if !total.is_empty() {
+        shown.extend_from_slice(format!("{}: {total}\n", diagnosed.name).as_bytes());
+    }
+    to_stderr(&shown);
+}
+
+/// How many diagnostics there are of a severity.
+pub(crate) fn count(diagnostics: &[Diagnostic], severity: Severity) -> usize {
+    diagnostics.iter().filter(|one| one.severity == severity).count()
+}
+
+/// `2 errors, 1 warning`; empty where there are none.
+pub(crate) fn counted(diagnostics: &[Diagnostic]) -> String {
+    let words = [(Severity::Error, "error"), (Severity::Warning, "warning")];
+    let counts = words.map(|(severity, word)| (count(diagnostics, severity), word));
+    let total: Vec<String> = counts
         .iter()
         .filter(|(count, _)| *count > 0)
         .map(|(count, word)| format!("{count} {word}{}", if *count == 1 { "" } else { "s" }))
         .collect();
-    if !total.is_empty() {
-        shown.extend_from_slice(format!("{name}: {}\n", total.join(", ")).as_bytes());
-    }
-    to_stderr(&shown);
+    total.join(", ")
 }
 
 fn to_stderr(bytes: &[u8]) {
@@ -79,7 +64,7 @@ fn render(name: &str, text: &str, diagnostic: &Diagnostic, color: bool, shown: &
         .with_char_set(CharSet::Unicode)
         .with_index_type(IndexType::Byte)
         .with_compact(false);
-    let at = |span: obverse_syntax::span::Span| (name, span.start as usize..span.end as usize);
+    let at = |span: Span| (name, span.start as usize..span.end as usize);
     let mut report = Report::build(kind, at(diagnostic.primary.span))
         .with_config(config)
         .with_code(diagnostic.code.as_str())
@@ -103,4 +88,53 @@ fn render(name: &str, text: &str, diagnostic: &Diagnostic, color: bool, shown: &
     }
     // Writing to memory does not fail.
     let _ = report.finish().write((name, Source::from(text)), &mut *shown);
+}
+
+/// The diagnostics of a source text for machines, one object each.
+pub(crate) fn diagnostics_json(diagnosed: &Diagnosed) -> Vec<Value> {
+    let lines = LineIndex::new(&diagnosed.text);
+    let label = |span: Span, text: &str| {
+        let (start, end) = (lines.position(span.start), lines.position(span.end));
+        json!({
+            "line": start.line,
+            "column": start.column,
+            "end_line": end.line,
+            "end_column": end.column,
+            "text": text,
+        })
+    };
+    let object = |diagnostic: &Diagnostic| {
+        let primary = &diagnostic.primary;
+        let mut object = label(primary.span, &primary.text);
+        object["type"] = json!("diagnostic");
+        object["file"] = json!(diagnosed.name);
+        object["code"] = json!(diagnostic.code.as_str());
+        object["severity"] = json!(match diagnostic.severity {
+            Severity::Error => "error",
+            Severity::Warning => "warning",
+        });
+        object["message"] = json!(diagnostic.message);
+        let labels = diagnostic.labels.iter().map(|one| label(one.span, &one.text));
+        object["labels"] = labels.collect();
+        object["notes"] = json!(diagnostic.notes);
+        object["help"] = json!(diagnostic.help);
+        object
+    };
+    diagnosed.diagnostics.iter().map(object).collect()
+}
+
+/// A message that is no diagnostic of a source text, for machines: without a code.
+pub(crate) fn message_json(message: &Message) -> Value {
+    json!({
+        "type": "diagnostic",
+        "file": message.file,
+        "line": message.place.map(|(line, _)| line),
+        "column": message.place.map(|(_, column)| column),
+        "code": null,
+        "severity": "error",
+        "message": message.text,
+        "labels": [],
+        "notes": [],
+        "help": null,
+    })
 }

@@ -1,68 +1,100 @@
 //! The story of a run, in lines that a person follows: where the program is, what the robot did,
 //! what came of it, and when.
+//!
+//! Knows the words; what happened it is told by the machine, event by event.
 
 use crate::write;
-use obverse_bytecode::{FunctionKind, Module};
-use obverse_isa::{Instr, Level};
+use obverse_bytecode::{Continuation, FunctionKind, Module, Severity};
+use obverse_isa::{ErrorId, FunctionId, Instr, Level, Setting};
 use obverse_vm::{Direction, Event, Observer};
 use obverse_workcell::{MotionEnd, MotionReport, Workcell};
 
 /// How wide the column of what the program says is.
 const TEXT_COLUMNS: usize = 52;
+/// Deeper calls than these are not set in further.
+const DEPTH_MAX: usize = 10;
 
 /// Tells a run as it happens.
 pub(crate) struct Story<'m> {
     module: &'m Module,
-    /// Whether anything has been told: the heads of sequences come with what happens in them.
-    began: bool,
 }
 
 impl<'m> Story<'m> {
     pub(crate) fn new(module: &'m Module) -> Self {
-        Self { module, began: false }
-    }
-
-    fn tell(&mut self, event: &Event, cell: &dyn Workcell, text: &str, outcome: &str) {
-        if !self.began {
-            write::line(&format!("{:>9}", "time"));
-            self.began = true;
-        }
-        let arrow = match event.direction {
-            Direction::Forward => ' ',
-            Direction::Reverse => '<',
-        };
-        let depth = event.frames.saturating_sub(2);
-        let text = format!("{}{text}", "  ".repeat(depth));
-        let time = format!("{:.2} s", cell.now_s());
-        let line = format!("{time:>9} {arrow} {text:<TEXT_COLUMNS$} {outcome}");
-        write::line(line.trim_end());
+        Self { module }
     }
 }
 
 impl Observer for Story<'_> {
     fn on_event(&mut self, event: &Event, cell: &dyn Workcell) {
-        if let Instr::Call { function, .. } | Instr::BlockReplace { function, .. } = event.instr {
-            let called = &self.module.functions[function.index()];
-            let text = format!("{} {}", kind_word(called.kind), called.name);
-            // Going in, the call's own depth; a reverse entry is told at the return.
-            let mut at_call = *event;
-            at_call.frames = event.frames - usize::from(event.direction == Direction::Forward);
-            let outcome = match event.instr {
-                Instr::BlockReplace { .. } => "in place of going back",
-                _ => "",
-            };
-            if event.direction == Direction::Forward || !outcome.is_empty() {
-                self.tell(&at_call, cell, &text, outcome);
-            }
+        let Some(told) = heading(self.module, event).or_else(|| act(self.module, event, cell))
+        else {
             return;
-        }
-        let Some(outcome) = outcome_of(self.module, event, cell) else { return };
-        let text = said(self.module, event.pc);
-        self.tell(event, cell, &text, &outcome);
+        };
+        let arrow = match event.direction {
+            Direction::Forward => ' ',
+            Direction::Reverse => '<',
+        };
+        let indent = "  ".repeat(told.depth.saturating_sub(2).min(DEPTH_MAX));
+        let text = format!("{indent}{}", told.text);
+        let time = format!("{:.2} s", cell.now_s());
+        let line = format!("{time:>9} {arrow} {text:<TEXT_COLUMNS$} {}", told.outcome);
+        write::line(line.trim_end());
     }
 }
 
-pub(crate) fn kind_word(kind: FunctionKind) -> &'static str {
+/// A line of the story.
+struct Told {
+    /// How many calls are under way around it.
+    depth: usize,
+    text: String,
+    outcome: String,
+}
+
+/// The line over what a sequence does: where it is called, or, going back, where its end is passed.
+fn heading(module: &Module, event: &Event) -> Option<Told> {
+    let depth = event.frames.saturating_sub(1);
+    let (text, outcome) = match (event.instr, event.direction) {
+        (Instr::Call { function, .. }, Direction::Forward) => {
+            (called(module, event.pc, function), "")
+        }
+        (Instr::Return { .. }, Direction::Reverse) => {
+            let function = module.functions.get(module.function_at(event.pc)?)?;
+            (format!("{} {}", kind_word(function.kind), function.name), "")
+        }
+        (Instr::BlockReplace { function, .. }, Direction::Reverse) => {
+            (replacement(module, function), "in place of going back")
+        }
+        _ => return None,
+    };
+    Some(Told { depth, text, outcome: outcome.to_owned() })
+}
+
+/// What an instruction did, if it is worth telling.
+fn act(module: &Module, event: &Event, cell: &dyn Workcell) -> Option<Told> {
+    let outcome = outcome_of(module, event, cell)?;
+    Some(Told { depth: event.frames, text: text_of(module, event), outcome })
+}
+
+/// A call in the program's words: `action pick(block_a)`.
+fn called(module: &Module, pc: u32, function: FunctionId) -> String {
+    let function = &module.functions[function.index()];
+    let said = said(module, pc);
+    // A recovery is called by no statement of its own.
+    let with_arguments = said.strip_prefix("call ").map(str::trim_start);
+    let name = with_arguments.filter(|text| text.starts_with(&function.name));
+    format!("{} {}", kind_word(function.kind), name.unwrap_or(&function.name))
+}
+
+fn replacement(module: &Module, function: FunctionId) -> String {
+    let function = &module.functions[function.index()];
+    match function.kind {
+        FunctionKind::Replacement => "in reverse".to_owned(),
+        kind => format!("{} {}", kind_word(kind), function.name),
+    }
+}
+
+fn kind_word(kind: FunctionKind) -> &'static str {
     match kind {
         FunctionKind::Start => "start",
         FunctionKind::Sequence => "sequence",
@@ -84,59 +116,116 @@ pub(crate) fn said(module: &Module, pc: u32) -> String {
         return obverse_bytecode::text::instruction(module, pc).unwrap_or_default();
     };
     let line = text.lines().next().unwrap_or("").trim();
-    let short: String = line.chars().take(TEXT_COLUMNS).collect();
+    let words: Vec<&str> = line.split_whitespace().collect();
+    let short: String = words.join(" ").chars().take(TEXT_COLUMNS).collect();
     short.trim_end_matches(['{', ' ']).to_owned()
+}
+
+/// What the program says at an event, or what it means there: the moves around an advanced move
+/// are all written in one clause.
+fn text_of(module: &Module, event: &Event) -> String {
+    let kind = module.function_at(event.pc).map(|index| module.functions[index].kind);
+    match event.instr {
+        Instr::MoveSlot { .. } if kind == Some(FunctionKind::AdvancedMove) => {
+            "return to initial position".to_owned()
+        }
+        Instr::MoveOffset { .. } if kind == Some(FunctionKind::AdvancedMove) => {
+            "perturbation".to_owned()
+        }
+        Instr::ErrorClear { error } => {
+            format!("error {}", module.errors[error.index()].name)
+        }
+        Instr::Irreversible { .. } if said(module, event.pc) == "}" => {
+            "end of what is irreversible".to_owned()
+        }
+        _ => said(module, event.pc),
+    }
 }
 
 /// What an instruction did, if it is worth telling.
 pub(crate) fn outcome_of(module: &Module, event: &Event, cell: &dyn Workcell) -> Option<String> {
-    let is_reverse = event.direction == Direction::Reverse;
+    match event.direction {
+        Direction::Forward => forward_outcome(module, event, cell),
+        Direction::Reverse => reverse_outcome(module, event, cell),
+    }
+}
+
+fn forward_outcome(module: &Module, event: &Event, cell: &dyn Workcell) -> Option<String> {
     Some(match event.instr {
-        Instr::OutputSet { bit, level, .. } => {
-            let level = if is_reverse { level_word(cell.output(bit.0)) } else { word(level) };
-            format!("output {} {level}", bit.0)
-        }
-        Instr::OutputToggle { bit, .. } => {
-            format!("output {} {}", bit.0, level_word(cell.output(bit.0)))
-        }
-        Instr::Wait { .. } if is_reverse => return None,
+        Instr::OutputSet { bit, .. } | Instr::OutputToggle { bit, .. } => output(bit.0, cell),
         Instr::Wait { .. } => "waited".to_owned(),
-        Instr::WaitInput { bit, level, .. } if !is_reverse => {
-            let is_there = cell.input(bit.0) == Ok(level.is_high());
-            let found = if is_there { "came" } else { "did not come in time" };
-            format!("input {} {} {found}", bit.0, word(level))
+        Instr::WaitInput { bit, level, .. } => waited_for(bit.0, level, cell),
+        Instr::SettingSet { setting: Setting::Tool, .. } => {
+            let is_asked_for = said(module, event.pc).starts_with("tool ");
+            is_asked_for.then(|| "mounted".to_owned())?
         }
-        Instr::ErrorRaise { error } if is_reverse => {
-            format!("error {} taken back", module.errors[error.index()].name)
+        Instr::Checkpoint { .. } => "may be gone back to".to_owned(),
+        Instr::Barrier { .. } | Instr::Irreversible { .. } => "no way back from here".to_owned(),
+        Instr::ErrorRaise { error } => {
+            let error = &module.errors[error.index()];
+            let severity = match error.severity {
+                Severity::Warning => "a warning",
+                Severity::Recoverable => "recoverable",
+                Severity::Fatal => "fatal",
+            };
+            format!("error {}, {severity}", error.name)
         }
-        Instr::ErrorRaise { error } => format!("error {}", module.errors[error.index()].name),
-        Instr::ErrorClear { error } if !is_reverse => {
-            format!("error {} dealt with", module.errors[error.index()].name)
-        }
-        Instr::Barrier { reason } | Instr::Irreversible { reason } => {
-            format!("no way back from here: {}", module.reasons[reason.index()])
-        }
+        Instr::ErrorClear { error } => dealt_with(module, error),
         _ => return event.report.map(|report| motion(event, &report)),
     })
 }
 
-fn motion(event: &Event, report: &MotionReport) -> String {
-    let is_guarded = matches!(event.instr, Instr::MoveGuarded { .. });
-    if event.direction == Direction::Reverse {
-        return format!("back in {:.2} s", report.duration_s);
+fn reverse_outcome(module: &Module, event: &Event, cell: &dyn Workcell) -> Option<String> {
+    Some(match event.instr {
+        Instr::OutputSet { bit, .. } | Instr::OutputToggle { bit, .. } => output(bit.0, cell),
+        Instr::ErrorRaise { error } => {
+            format!("error {} taken back", module.errors[error.index()].name)
+        }
+        _ => match event.report? {
+            report if report.duration_s == 0.0 => "there already".to_owned(),
+            report => format!("back in {:.2} s", report.duration_s),
+        },
+    })
+}
+
+fn output(bit: u16, cell: &dyn Workcell) -> String {
+    format!("output {bit} {}", level_word(cell.output(bit)))
+}
+
+fn waited_for(bit: u16, level: Level, cell: &dyn Workcell) -> String {
+    if cell.input(bit) == Ok(level.is_high()) {
+        format!("input {bit} {}", level_word(level.is_high()))
+    } else {
+        format!("input {bit} still {}: time is up", level_word(!level.is_high()))
     }
-    if is_guarded {
+}
+
+fn dealt_with(module: &Module, error: ErrorId) -> String {
+    let error = &module.errors[error.index()];
+    let then = match error.continuation {
+        _ if error.severity == Severity::Warning => return "noted".to_owned(),
+        Continuation::Action => "the action again",
+        Continuation::NextAction => "on with the next action",
+        Continuation::Sequence => "the sequence again",
+        Continuation::Program => "the program again",
+        Continuation::Stop => "stop",
+    };
+    format!("dealt with; {then}")
+}
+
+fn motion(event: &Event, report: &MotionReport) -> String {
+    let distance_mm = report.distance_m * 1e3;
+    if matches!(event.instr, Instr::MoveGuarded { .. }) {
         let end = match report.end {
             MotionEnd::Reached => "reached its end",
             MotionEnd::StoppedByForce => "stopped by force",
         };
-        return format!("{:.1} mm, {:.1} N, {end}", report.distance_m * 1e3, report.peak_force_n);
+        return format!("{distance_mm:.1} mm, {:.1} N, {end}", report.peak_force_n);
     }
-    format!("{:.1} mm in {:.2} s", report.distance_m * 1e3, report.duration_s)
-}
-
-fn word(level: Level) -> &'static str {
-    level_word(level.is_high())
+    if report.duration_s == 0.0 {
+        return "there already".to_owned();
+    }
+    format!("{distance_mm:.1} mm in {:.2} s", report.duration_s)
 }
 
 fn level_word(is_high: bool) -> &'static str {

@@ -1,16 +1,47 @@
 //! Output: to a file whole or not at all, and to a standard output that may be closed any time.
 
-use crate::show::Problem;
+use crate::problem::Problem;
 use std::fs;
-use std::io::{self, Write};
+use std::io::{self, ErrorKind, Write};
 use std::path::Path;
+
+/// Check that a file can become what a command is about to make, before anything is done: its
+/// folder is there, it is none itself, and it is none of the files that the command reads.
+pub(crate) fn check(path: &Path, what: &str, inputs: &[&Path]) -> Result<(), Problem> {
+    let cannot = |why: String| Err(Problem::of_file(path, why));
+    if path.file_name().is_none() || path.is_dir() {
+        return cannot(format!("this is a folder; name a file for the {what}"));
+    }
+    let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty());
+    if let Some(folder) = folder.filter(|folder| !folder.is_dir()) {
+        return cannot(format!("cannot be written: there is no folder {}", folder.display()));
+    }
+    if let Some(input) = inputs.iter().find(|input| is_same(path, input)) {
+        return cannot(format!("the {what} would overwrite {}", input.display()));
+    }
+    let extension = path.extension().and_then(|extension| extension.to_str()).unwrap_or("");
+    if matches!(extension, "obv" | "obvasm" | "toml") {
+        return cannot(format!(
+            "the {what} is no text; `.{extension}` is for files that people write"
+        ));
+    }
+    Ok(())
+}
+
+/// Whether two paths lead to one file.
+fn is_same(a: &Path, b: &Path) -> bool {
+    match (fs::canonicalize(a), fs::canonicalize(b)) {
+        (Ok(a), Ok(b)) => a == b,
+        _ => a == b,
+    }
+}
 
 /// Write a file by way of a neighbour that takes its name only when it is complete, so that what was
 /// there is kept if anything goes wrong.
 pub(crate) fn file(path: &Path, bytes: &[u8]) -> Result<(), Problem> {
     let name = path.file_name().map(|name| name.to_string_lossy().into_owned());
     let Some(name) = name else {
-        return Err(Problem::new(format!("{}: this names no file", path.display())));
+        return Err(Problem::of_file(path, "this names no file"));
     };
     let neighbour = path.with_file_name(format!(".{name}.{}.part", std::process::id()));
     let written = fs::File::create(&neighbour)
@@ -19,16 +50,22 @@ pub(crate) fn file(path: &Path, bytes: &[u8]) -> Result<(), Problem> {
     written.map_err(|error| {
         // What could not be written need not stay; that it cannot be removed changes nothing.
         let _ = fs::remove_file(&neighbour);
-        Problem::new(format!("{}: cannot be written: {error}", path.display()))
+        Problem::of_file(path, format!("cannot be written: {error}"))
     })
 }
 
-/// Print text. A reader that has gone away ends the process quietly, as a pipe's writer should.
+/// Print text. A reader that has gone away ends the process quietly, as a pipe's writer should; any
+/// other failure is an error.
 pub(crate) fn out(text: &str) {
     let mut stdout = io::stdout().lock();
-    if stdout.write_all(text.as_bytes()).and_then(|()| stdout.flush()).is_err() {
+    let Err(error) = stdout.write_all(text.as_bytes()).and_then(|()| stdout.flush()) else {
+        return;
+    };
+    if error.kind() == ErrorKind::BrokenPipe {
         std::process::exit(0);
     }
+    crate::show::problem(&Problem::new(format!("standard output: cannot be written: {error}")));
+    std::process::exit(2);
 }
 
 /// Print a line.

@@ -128,7 +128,8 @@ pub(crate) fn parse(text: &str) -> Result<Contract, String> {
         stretches.push((contract.op.clone(), std::mem::take(&mut header)));
     }
     for (title, lines) in stretches {
-        let case = read_case(&header, &lines).map_err(|error| format!("case `{title}`: {error}"))?;
+        let case =
+            read_case(&header, &lines).map_err(|error| format!("case `{title}`: {error}"))?;
         contract.cases.push(Case { title, ..case });
     }
     Ok(contract)
@@ -223,14 +224,18 @@ fn clauses(text: &str) -> Result<Vec<Clause>, String> {
             _ => None,
         };
         let (value, left) = match closing {
-            Some(closing) => {
-                after[1..].split_once(closing).ok_or_else(|| format!("no `{closing}` in `{rest}`"))?
-            }
+            Some(closing) => after[1..]
+                .split_once(closing)
+                .ok_or_else(|| format!("no `{closing}` in `{rest}`"))?,
             None => after.split_once(' ').unwrap_or((after, "")),
         };
         let value = match closing {
             Some(']') => Value::Many(
-                value.split(',').map(|item| item.trim().to_owned()).filter(|x| !x.is_empty()).collect(),
+                value
+                    .split(',')
+                    .map(|item| item.trim().to_owned())
+                    .filter(|x| !x.is_empty())
+                    .collect(),
             ),
             _ => Value::One(value.to_owned()),
         };

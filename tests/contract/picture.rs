@@ -302,4 +302,3 @@ fn forget(picture: &mut Picture, value: &Value) -> Result<(), String> {
     picture.insert("tape dropped".to_owned(), vec![picture["tape dropped"][0] + dropped]);
     Ok(())
 }
-

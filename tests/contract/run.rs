@@ -14,8 +14,7 @@ const MAX_STEPS: usize = 2_000;
 /// What restores less than was there, by the programmer's own word.
 const MAY_DIFFER: [&str; 3] = ["move.always", "block.skip", "block.replace"];
 /// Clauses that say how a step ended, and what it commanded, rather than what there is.
-const OF_THE_STEP: [&str; 7] =
-    ["commands", "trap", "fault", "raises", "stop", "refused", "lands"];
+const OF_THE_STEP: [&str; 7] = ["commands", "trap", "fault", "raises", "stop", "refused", "lands"];
 
 /// Whether a contract is of a row, and holds.
 pub(crate) fn holds(row: &OpInfo, contract: &Contract) -> Result<(), String> {
@@ -80,8 +79,7 @@ impl<'t> Trial<'t> {
         }
         let machine = Machine::new(program, &cell).map_err(|errors| listed(&errors))?;
         let pc = case.pc.ok_or("it has no `before`")?;
-        let mut trial =
-            Self { row, case, words, program, machine, cell, pc, history: Vec::new() };
+        let mut trial = Self { row, case, words, program, machine, cell, pc, history: Vec::new() };
         trial.history.push(trial.picture());
         Ok(trial)
     }
@@ -191,7 +189,8 @@ impl<'t> Trial<'t> {
             }
             expected.insert("digest".to_owned(), found["digest"].clone());
         } else {
-            same(&was, &expected).map_err(|broken| format!("it is not what was there: {broken}"))?;
+            same(&was, &expected)
+                .map_err(|broken| format!("it is not what was there: {broken}"))?;
         }
         same(&expected, &found)
     }
@@ -282,7 +281,9 @@ impl<'t> Trial<'t> {
         let told: Vec<String> =
             self.cell.log.iter().map(|command| self.words.command(command)).collect();
         let said = clause(clauses, "commands").map_or(&[][..], Value::all);
-        (said == told).then_some(()).ok_or_else(|| format!("commands should be {said:?}, are {told:?}"))
+        (said == told)
+            .then_some(())
+            .ok_or_else(|| format!("commands should be {said:?}, are {told:?}"))
     }
 
     /// Whether what was recorded is of the kind that the class names.

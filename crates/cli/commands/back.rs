@@ -14,8 +14,7 @@ pub(crate) type Arguments = run::Arguments;
 
 pub(crate) fn run(arguments: &Arguments) -> Result {
     let program = load::program(&arguments.file)?;
-    let (mut cell, cell_name) =
-        load::workcell(&program, arguments.cell.as_deref(), arguments.seed)?;
+    let (mut cell, cell_name) = run::workcell(arguments, &program)?;
     let mut machine = load::machine(&program, &cell, &cell_name)?;
     let module = program.verified.module();
     run::head(arguments, &cell_name);
@@ -26,7 +25,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result {
     if !arguments.json {
         write::line(&report::ending_words(module, &there));
         write::line(&run::figures_line(&machine, &cell));
-        write::line("and back");
+        write::line("\nand back");
     }
     // The fresh command without which nothing moves after a stop.
     if cell.is_stopped() {

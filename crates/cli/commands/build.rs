@@ -1,10 +1,8 @@
 //! `obverse build`: compile a program to a module file.
 
 use super::Result;
-use crate::Outcome;
-use crate::load;
-use crate::show::Problem;
-use crate::write;
+use crate::problem::Problem;
+use crate::{Outcome, load, write};
 use std::path::PathBuf;
 
 #[derive(clap::Args)]
@@ -19,12 +17,9 @@ pub(crate) struct Arguments {
 pub(crate) fn run(arguments: &Arguments) -> Result {
     let program = load::program(&arguments.file)?;
     let output = arguments.output.clone().unwrap_or_else(|| arguments.file.with_extension("obc"));
-    if output == arguments.file {
-        let why = format!("{}: this would overwrite the program itself", output.display());
-        return Err(Problem::new(why));
-    }
+    write::check(&output, "module", &[&arguments.file])?;
     let bytes = obverse_bytecode::encode(program.verified.module())
-        .map_err(|error| Problem::new(format!("{}: {error}", arguments.file.display())))?;
+        .map_err(|error| Problem::of_file(&arguments.file, error))?;
     write::file(&output, &bytes)?;
     write::line(&format!("{}: {} bytes", output.display(), bytes.len()));
     Ok(Outcome::Done)

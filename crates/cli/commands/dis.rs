@@ -1,7 +1,7 @@
 //! `obverse dis`: show the instructions of a program, with the class of each.
 
 use super::Result;
-use crate::{Outcome, load, write};
+use crate::{Outcome, load, show, write};
 use std::path::PathBuf;
 
 #[derive(clap::Args)]
@@ -11,7 +11,9 @@ pub(crate) struct Arguments {
 }
 
 pub(crate) fn run(arguments: &Arguments) -> Result {
-    let module = load::module(&arguments.file)?;
+    // What cannot run can be looked at all the same.
+    let (module, source) = load::module(&arguments.file)?;
+    source.iter().for_each(show::diagnostics);
     write::out(&obverse_bytecode::disassemble(&module));
     Ok(Outcome::Done)
 }

@@ -1,10 +1,13 @@
 //! `obverse explain`: explain an opcode or the code of a diagnostic.
 
 use super::Result;
-use crate::show::Problem;
+use crate::problem::Problem;
 use crate::{Outcome, write};
 use obverse_isa::{OPS, Opcode, reference};
 use obverse_syntax::codes::Code;
+
+/// How wide prose is set.
+const COLUMNS: usize = 80;
 
 #[derive(clap::Args)]
 pub(crate) struct Arguments {
@@ -14,20 +17,40 @@ pub(crate) struct Arguments {
 
 pub(crate) fn run(arguments: &Arguments) -> Result {
     let word = arguments.word.trim();
-    if let Some(opcode) = Opcode::from_mnemonic(word) {
-        write::out(&reference::explain(opcode.info()));
+    if let Some(opcode) = Opcode::from_mnemonic(&word.to_lowercase()) {
+        write::out(&set(&reference::explain(opcode.info())));
         return Ok(Outcome::Done);
     }
-    if let Ok(code) = word.to_uppercase().parse::<Code>() {
-        write::line(&format!("{code}: {}\n\n{}", code.title(), code.explanation().trim()));
+    if let Ok(code) = word.parse::<Code>() {
+        write::out(&set(code.explanation()));
         return Ok(Outcome::Done);
     }
     let words =
         OPS.iter().map(|row| row.mnemonic).chain(Code::ALL.iter().map(|code| code.as_str()));
     let near = obverse_syntax::nearest(word, words);
     let hint = near.map_or_else(
-        || "`obverse isa` lists the opcodes".to_owned(),
+        || "`obverse isa` lists the opcodes, and diagnostics show their codes".to_owned(),
         |near| format!("did you mean `{near}`?"),
     );
     Err(Problem::new(format!("`{word}` is neither an opcode nor the code of a diagnostic; {hint}")))
+}
+
+/// The lines of a text, broken between words where they are too long.
+fn set(text: &str) -> String {
+    let mut lines = String::new();
+    for line in text.lines() {
+        let mut column = 0;
+        for word in line.split_inclusive(' ') {
+            let width = word.trim_end().chars().count();
+            if column > 0 && column + width > COLUMNS {
+                lines.truncate(lines.trim_end_matches(' ').len());
+                lines.push('\n');
+                column = 0;
+            }
+            lines.push_str(word);
+            column += word.chars().count();
+        }
+        lines.push('\n');
+    }
+    lines
 }

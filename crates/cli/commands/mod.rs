@@ -10,7 +10,7 @@ pub(crate) mod run;
 pub(crate) mod tape;
 
 use crate::Outcome;
-use crate::show::Problem;
+use crate::problem::Problem;
 
 /// What every command returns.
 pub(crate) type Result = std::result::Result<Outcome, Problem>;

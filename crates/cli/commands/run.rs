@@ -2,8 +2,8 @@
 
 use super::Result;
 use crate::load::{self, Program};
+use crate::problem::Problem;
 use crate::report::{self, Report};
-use crate::show::Problem;
 use crate::story::Story;
 use crate::{Outcome, write};
 use obverse_recovery::{Ending, drive};
@@ -37,8 +37,7 @@ pub(crate) struct Arguments {
 
 pub(crate) fn run(arguments: &Arguments) -> Result {
     let program = load::program(&arguments.file)?;
-    let (mut cell, cell_name) =
-        load::workcell(&program, arguments.cell.as_deref(), arguments.seed)?;
+    let (mut cell, cell_name) = workcell(arguments, &program)?;
     let mut machine = load::machine(&program, &cell, &cell_name)?;
     head(arguments, &cell_name);
     let ending = go(arguments, &mut machine, Direction::Forward, &mut cell);
@@ -47,6 +46,21 @@ pub(crate) fn run(arguments: &Arguments) -> Result {
     }
     finish(arguments, &machine, &cell, &ending);
     Ok(if ending == Ending::Finished { Outcome::Done } else { Outcome::EndedOtherwise })
+}
+
+/// The workcell of a run, once it is sure that its tape has a place to go.
+pub(crate) fn workcell(
+    arguments: &Arguments,
+    program: &Program,
+) -> std::result::Result<(Sim, String), Problem> {
+    let named = arguments.cell.as_deref();
+    if let Some(tape) = &arguments.tape {
+        let cell = load::workcell_path(program, named);
+        let inputs: Vec<&Path> =
+            std::iter::once(program.path.as_path()).chain(cell.as_deref()).collect();
+        write::check(tape, "tape", &inputs)?;
+    }
+    load::workcell(program, named, arguments.seed)
 }
 
 /// Say what is about to run.
@@ -82,7 +96,7 @@ pub(crate) fn record(
     seed: u64,
     ending: &Ending,
 ) -> std::result::Result<(), Problem> {
-    let cannot = |error| Problem::new(format!("{}: {error}", path.display()));
+    let cannot = |error| Problem::of_file(path, error);
     let module = obverse_bytecode::encode(program.verified.module()).map_err(cannot)?;
     let file = TapeFile {
         fingerprint: obverse_bytecode::fingerprint(&module),
@@ -101,6 +115,7 @@ fn finish(arguments: &Arguments, machine: &Machine<'_>, cell: &Sim, ending: &End
     if arguments.json {
         let mut more = Map::new();
         more.insert("message".to_owned(), json!(words));
+        more.insert("errors".to_owned(), report::pending(machine));
         more.insert("stopped_at".to_owned(), report::place(module, report::ending_pc(ending)));
         report::summary(ending.code(), report::figures(machine, cell), more);
         return;

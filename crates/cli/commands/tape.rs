@@ -5,11 +5,12 @@
 //! listing walks a machine back over the tape, with a workcell that moves nothing.
 
 use super::Result;
-use crate::show::Problem;
+use crate::problem::{Message, Problem};
 use crate::story::said;
 use crate::{Outcome, load, write};
-use obverse_bytecode::{Verified, verify};
+use obverse_bytecode::{Module, Verified, verify};
 use obverse_geometry::JointConfiguration;
+use obverse_isa::Instr;
 use obverse_tape::{Place, TapeFile};
 use obverse_vm::{Direction, Machine, Stop};
 use obverse_workcell::Shadow;
@@ -45,14 +46,13 @@ struct Entry {
 }
 
 pub(crate) fn run(arguments: &Arguments) -> Result {
-    let path = arguments.file.display();
-    let (file, module) = TapeFile::from_bytes(&load::bytes(&arguments.file)?)
-        .map_err(|error| Problem::new(format!("{path}: {error}")))?;
+    let path = &arguments.file;
+    let (file, module) =
+        TapeFile::from_bytes(&load::bytes(path)?).map_err(|error| Problem::of_file(path, error))?;
     let program = verify(module).map_err(|errors| {
-        Problem::several(errors.iter().map(|error| format!("{path}: {error}")).collect())
+        Problem::several(errors.iter().map(|error| Message::of_file(path, error)).collect())
     })?;
-    let (entries, stop) =
-        walk(&program, &file).map_err(|error| Problem::new(format!("{path}: {error}")))?;
+    let (entries, stop) = walk(&program, &file).map_err(|error| Problem::of_file(path, error))?;
     let mut costs: BTreeMap<&'static str, Cost> = BTreeMap::new();
     for entry in &entries {
         let info = program.module().code[entry.pc as usize].info();
@@ -69,13 +69,12 @@ pub(crate) fn run(arguments: &Arguments) -> Result {
     Ok(Outcome::Done)
 }
 
-fn walk(
-    program: &Verified,
-    file: &TapeFile,
-) -> std::result::Result<(Vec<Entry>, Stop), obverse_vm::SnapshotError> {
+/// All records, newest first, and where they lead back to.
+fn walk(program: &Verified, file: &TapeFile) -> std::result::Result<(Vec<Entry>, Stop), String> {
     let state = &file.state;
     let mut cell = Shadow::new(JointConfiguration(state.joints), state.outputs.clone());
-    let mut machine = Machine::from_recording(program, state, &file.streams, &cell)?;
+    let mut machine = Machine::from_recording(program, state, &file.streams, &cell)
+        .map_err(|error| error.to_string())?;
     let mut entries = Vec::new();
     loop {
         let before = place(&machine);
@@ -83,12 +82,21 @@ fn walk(
         let is_pending =
             machine.state().pending().is_some_and(|p| p.direction == Direction::Forward);
         let top = newest(&machine);
-        if let Err(stop) = machine.unwind(&mut cell) {
-            return Ok((entries, stop));
+        match machine.unwind(&mut cell) {
+            Ok(()) => {}
+            Err(stop @ (Stop::AtStart | Stop::Refused(_))) => return Ok((entries, stop)),
+            Err(Stop::Trap(trap)) => {
+                let what = format!("its records do not fit the program: {}", trap.kind);
+                return Err(what);
+            }
+            Err(_) => return Err("its records do not fit the program".to_owned()),
         }
         let size = less(before, place(&machine));
         if size != Place::default() {
-            let pc = if is_pending { pc } else { pc.saturating_sub(1) };
+            let popped_by = if is_pending { pc } else { pc.saturating_sub(1) };
+            // Behind a call, what was taken back is the end of what it called.
+            let is_call = matches!(program.module().code[popped_by as usize], Instr::Call { .. });
+            let pc = if is_call { machine.state().pc() } else { popped_by };
             entries.push(Entry { pc, size, what: describe(size, &top) });
         }
     }
@@ -149,16 +157,7 @@ fn as_text(
     let source = module.sources.first().map_or("a program", |source| source.name.as_str());
     write::line(&format!("{source}, fingerprint {:016x}, seed {}", file.fingerprint, file.seed));
     write::line(&format!("ended: {}", file.ending));
-    write::line(&format!("\n{:>6}  {:18} {:40} record, newest first", "instr", "opcode", "source"));
-    for entry in entries.iter().take(arguments.records) {
-        let mnemonic = module.code[entry.pc as usize].info().mnemonic;
-        let text = said(module, entry.pc);
-        write::line(&format!("{:>6}  {mnemonic:18} {text:40} {}", entry.pc, entry.what));
-    }
-    let hidden = entries.len().saturating_sub(arguments.records);
-    if hidden > 0 {
-        write::line(&format!("        and {hidden} more; --records {} shows them", entries.len()));
-    }
+    records_as_text(module, entries, arguments.records);
     write::line(&format!("\n{:18} {:>8} {:>10} {:>12}", "opcode", "records", "bits", "bits each"));
     for (mnemonic, cost) in costs {
         let each = cost.bits as f64 / cost.records as f64;
@@ -173,12 +172,27 @@ fn as_text(
         "\n{live} bits are on the tape, {} were dropped",
         file.streams.dropped_bits
     ));
-    let back_to = match stop {
-        Stop::AtStart => "they lead back to the start".to_owned(),
+    write::line(&match stop {
         Stop::Refused(refusal) => format!("they lead back to {}", said(module, refusal.pc)),
-        other => format!("the walk back ended in {other:?}"),
-    };
-    write::line(&back_to);
+        _ => "they lead back to the start".to_owned(),
+    });
+}
+
+fn records_as_text(module: &Module, entries: &[Entry], shown: usize) {
+    write::line(&format!(
+        "\n{:>6}  {:18} {:>5}  {:40} record, newest first",
+        "instr", "opcode", "line", "source"
+    ));
+    for entry in entries.iter().take(shown) {
+        let mnemonic = module.code[entry.pc as usize].info().mnemonic;
+        let line = module.place_of(entry.pc).map_or_else(String::new, |at| at.1.to_string());
+        let text = said(module, entry.pc);
+        write::line(&format!("{:>6}  {mnemonic:18} {line:>5}  {text:40} {}", entry.pc, entry.what));
+    }
+    let hidden = entries.len().saturating_sub(shown);
+    if hidden > 0 {
+        write::line(&format!("        and {hidden} more; --records {} shows them", entries.len()));
+    }
 }
 
 fn as_json(

@@ -1,13 +1,17 @@
 //! Items: where they truly are, which one the gripper holds, and how.
 //!
 //! An item that is taken and given back with the joints at the same values, bit for bit, lies again
-//! exactly where it lay: the pose it was taken from is kept with the grip and not computed again.
-//! Knows nothing of contact.
+//! exactly where it lay: the pose it was taken from is kept with the grip and not computed again,
+//! and a grip that explains exactly how an item lies under the gripper is used again. Knows nothing
+//! of contact.
 
 use crate::cell::{GripperSpec, ItemSpec};
 use crate::kinematics::forward;
 use obverse_geometry::tolerance::pose_distance;
 use obverse_geometry::{JointConfiguration, Pose};
+
+/// How many grips of an item are remembered.
+const GRIPS_MAX: usize = 16;
 
 /// How an item sits in the gripper.
 #[derive(Clone, Copy, Debug)]
@@ -18,11 +22,10 @@ struct Grip {
     taken_at: JointConfiguration,
     /// The pose it was taken from.
     origin: Pose,
-    /// Where the joints were when it was let go last.
-    left_at: Option<JointConfiguration>,
 }
 
 impl Grip {
+    /// Where the item is with the joints there.
     fn pose(&self, joints: &JointConfiguration) -> Pose {
         if joints.same_bits(&self.taken_at) {
             return self.origin;
@@ -31,12 +34,32 @@ impl Grip {
     }
 }
 
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Debug)]
 struct Item {
     /// Where it lies while it is not held.
     pose: Pose,
-    /// How it was held last.
-    grip: Option<Grip>,
+    /// How it was held, the present or last grip at the end.
+    grips: Vec<Grip>,
+}
+
+impl Item {
+    /// Take it as it was held before, if it lies exactly as that grip would have left it here.
+    fn take_again(&mut self, joints: &JointConfiguration) -> bool {
+        let Some(index) = self.grips.iter().rposition(|grip| grip.pose(joints) == self.pose) else {
+            return false;
+        };
+        let grip = self.grips.remove(index);
+        self.grips.push(grip);
+        true
+    }
+
+    fn take(&mut self, joints: &JointConfiguration) {
+        let in_mount = forward(joints).inverse().compose(&self.pose);
+        if self.grips.len() == GRIPS_MAX {
+            self.grips.remove(0);
+        }
+        self.grips.push(Grip { in_mount, taken_at: *joints, origin: self.pose });
+    }
 }
 
 /// All items and the one that is held.
@@ -48,7 +71,7 @@ pub(crate) struct Inventory {
 
 impl Inventory {
     pub(crate) fn new(poses: impl Iterator<Item = Pose>) -> Self {
-        Self { items: poses.map(|pose| Item { pose, grip: None }).collect(), held: None }
+        Self { items: poses.map(|pose| Item { pose, grips: Vec::new() }).collect(), held: None }
     }
 
     pub(crate) fn held(&self) -> Option<usize> {
@@ -58,13 +81,13 @@ impl Inventory {
     /// The held item in the frame of the tool mount.
     pub(crate) fn held_in_mount(&self) -> Option<(usize, Pose)> {
         let index = self.held?;
-        self.items[index].grip.map(|grip| (index, grip.in_mount))
+        self.items[index].grips.last().map(|grip| (index, grip.in_mount))
     }
 
     /// Where an item is while the joints are at `joints`.
     pub(crate) fn pose(&self, index: usize, joints: &JointConfiguration) -> Option<Pose> {
         let item = self.items.get(index)?;
-        match item.grip {
+        match item.grips.last() {
             Some(grip) if self.held == Some(index) => Some(grip.pose(joints)),
             _ => Some(item.pose),
         }
@@ -93,15 +116,11 @@ impl Inventory {
         if self.held.is_some() {
             return;
         }
-        let left_here = |item: &Item| {
-            item.grip.and_then(|grip| grip.left_at).is_some_and(|left| left.same_bits(joints))
-        };
-        if let Some(index) = self.items.iter().position(left_here) {
-            self.held = Some(index);
+        self.held = self.items.iter_mut().position(|item| item.take_again(joints));
+        if self.held.is_some() {
             return;
         }
-        let mount = forward(joints);
-        let here = mount.compose(tcp);
+        let here = forward(joints).compose(tcp);
         let mut best: Option<(f64, usize)> = None;
         for (index, (item, spec)) in self.items.iter().zip(specs).enumerate() {
             let (far_m, turned_rad) = pose_distance(&item.pose.compose(&spec.grasp), &here);
@@ -110,20 +129,95 @@ impl Inventory {
                 best = Some((far_m, index));
             }
         }
-        let Some((_, index)) = best else { return };
-        let origin = self.items[index].pose;
-        let in_mount = mount.inverse().compose(&origin);
-        self.items[index].grip = Some(Grip { in_mount, taken_at: *joints, origin, left_at: None });
-        self.held = Some(index);
+        if let Some((_, index)) = best {
+            self.items[index].take(joints);
+            self.held = Some(index);
+        }
     }
 
     /// Open the gripper: what it held stays where it is.
     pub(crate) fn open(&mut self, joints: &JointConfiguration) {
         let Some(index) = self.held.take() else { return };
         let item = &mut self.items[index];
-        if let Some(grip) = &mut item.grip {
+        if let Some(grip) = item.grips.last() {
             item.pose = grip.pose(joints);
-            grip.left_at = Some(*joints);
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::cell::Cell;
+
+    struct Hand {
+        cell: Cell,
+        items: Inventory,
+    }
+
+    impl Hand {
+        fn new() -> Self {
+            let cell = Cell::bare();
+            let items = Inventory::new(cell.items.iter().map(|item| item.pose));
+            Self { cell, items }
+        }
+
+        fn close(&mut self, joints: &JointConfiguration) -> Option<usize> {
+            let gripper = self.cell.gripper.unwrap();
+            self.items.close(&self.cell.items, &gripper, &Pose::identity(), joints);
+            self.items.held()
+        }
+
+        fn open(&mut self, joints: &JointConfiguration) -> Pose {
+            self.items.open(joints);
+            self.items.pose(0, joints).unwrap()
+        }
+    }
+
+    fn moved(joints: &JointConfiguration, by: f64) -> JointConfiguration {
+        JointConfiguration(joints.0.map(|joint| joint + by))
+    }
+
+    #[test]
+    fn only_what_is_near_is_taken() {
+        let mut hand = Hand::new();
+        let home = hand.cell.arm.home;
+        assert_eq!(hand.close(&moved(&home, 0.1)), None);
+        // A fraction of a millimetre and of a degree.
+        assert_eq!(hand.close(&moved(&home, 0.0005)), Some(0));
+    }
+
+    #[test]
+    fn every_grip_on_the_way_is_undone_exactly() {
+        let mut hand = Hand::new();
+        let home = hand.cell.arm.home;
+        let (away, near) = (moved(&home, 0.3), moved(&home, 0.300_5));
+        let first = hand.items.pose(0, &home).unwrap();
+        // Taken at home and left; taken again a little aside of that, and left elsewhere.
+        hand.close(&home);
+        let second = hand.open(&away);
+        hand.close(&near);
+        let third = hand.open(&moved(&home, -0.4));
+        assert!(first != second && second != third);
+        // Backwards: each time where it was, bit for bit.
+        assert_eq!(hand.close(&moved(&home, -0.4)), Some(0));
+        assert_eq!(hand.open(&near), second);
+        assert_eq!(hand.close(&away), Some(0));
+        assert_eq!(hand.open(&home), first);
+        // And forwards again.
+        assert_eq!(hand.close(&home), Some(0));
+        assert_eq!(hand.open(&away), second);
+    }
+
+    #[test]
+    fn grips_are_not_remembered_without_bound() {
+        let mut hand = Hand::new();
+        let mut joints = hand.cell.arm.home;
+        for _ in 0..100 {
+            assert_eq!(hand.close(&moved(&joints, 1e-6)), Some(0));
+            joints = moved(&joints, 0.01);
+            hand.open(&joints);
+        }
+        assert!(hand.items.items[0].grips.len() <= GRIPS_MAX);
     }
 }

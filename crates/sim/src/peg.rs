@@ -43,15 +43,16 @@
 //!   the cone has its width.
 //! - *bottom*: the end meets the bottom: `F = K p` added to what the wall takes.
 
+mod ellipse;
+
+use ellipse::{Ellipse, Excess, Turn};
 use nalgebra::{Vector2, Vector3};
 
 /// Overlaps within this are none, in millimetres.
 const ROUNDING_MM: f64 = 1e-7;
 /// How often the peg is pushed off what it overlaps before the rest is left.
 const PUSHES_MAX: u32 = 32;
-/// A step of Newton's method within this is the last: the next would be about its square.
-const LAST_STEP_RAD: f64 = 1e-4;
-/// Steps of Newton's method; it starts within a thousandth of the result.
+/// Steps of Newton's method for the tilt that fits.
 const NEWTON_STEPS: u32 = 6;
 
 /// A peg, a hole and how they touch.
@@ -265,8 +266,8 @@ impl Fit {
 
     /// The least way that the hole pushes the peg aside, and what pushes.
     fn pushed_aside(&self, peg: &Tilted, below_throat: f64) -> (Vector2<f64>, Stage) {
-        let rim = |push| self.rim(peg, peg.rim + push).excess(self, peg);
-        let throat = |push| (self.throat(peg, peg.rim + push, below_throat), Stage::OnePoint);
+        let rim = |push| self.at_rim(peg, peg.rim + push);
+        let throat = |push| (self.at_throat(peg, peg.rim + push, below_throat), Stage::OnePoint);
         let unpushed = Vector2::zeros();
         let (at_rim, at_throat) = (rim(unpushed), throat(unpushed));
         if at_rim.0.0.max(at_throat.0.0) <= ROUNDING_MM {
@@ -301,8 +302,8 @@ impl Fit {
     ) -> (Vector2<f64>, Stage) {
         let (mut push, mut stage) = from;
         for _ in 0..PUSHES_MAX {
-            let (rim, at) = self.rim(peg, peg.rim + push).excess(self, peg);
-            let throat = self.throat(peg, peg.rim + push, below_throat);
+            let (rim, at) = self.at_rim(peg, peg.rim + push);
+            let throat = self.at_throat(peg, peg.rim + push, below_throat);
             if rim.0.abs().max(throat.0.abs()) <= ROUNDING_MM {
                 break;
             }
@@ -358,15 +359,55 @@ impl Fit {
         Ellipse { middle, along: self.peg_radius_mm * peg.cos, across: self.peg_radius_mm }
     }
 
+    /// How far the rim is beyond bore or cone, and on which of them.
+    fn at_rim(&self, peg: &Tilted, middle: Vector2<f64>) -> (Excess, Stage) {
+        let rim = self.rim(peg, middle);
+        let (bore, throat_z) = (self.hole_radius_mm, self.hole_chamfer_mm);
+        let dip = self.peg_radius_mm * peg.sin;
+        if peg.rim_z - dip >= throat_z {
+            return (rim.beyond(bore), Stage::OnePoint);
+        }
+        // Bore below the throat, cone above it, nothing above the face. The maximum is at that of
+        // one of the two, or where they end.
+        let mut worst = ((f64::NEG_INFINITY, Vector2::x()), Stage::Free);
+        let mut candidate = |turn: Turn| {
+            let above_throat = throat_z - (peg.rim_z - dip * turn.cos);
+            let (wall, stage) = if above_throat <= 0.0 {
+                (bore, Stage::OnePoint)
+            } else if above_throat <= throat_z + self.peg_chamfer_mm + ROUNDING_MM {
+                (bore + above_throat, Stage::Chamfer)
+            } else {
+                return;
+            };
+            let excess = rim.excess_at(turn, wall);
+            if excess.0 > worst.0.0 {
+                worst = (excess, stage);
+            }
+        };
+        candidate(rim.farthest());
+        if dip > 0.0 {
+            candidate(rim.climb(-dip));
+            for edge_z in [throat_z, -self.peg_chamfer_mm] {
+                let cos = (peg.rim_z - edge_z) / dip;
+                if cos.abs() < 1.0 {
+                    let sin = (1.0 - cos * cos).sqrt();
+                    candidate(Turn { cos, sin });
+                    candidate(Turn { cos, sin: -sin });
+                }
+            }
+        }
+        worst
+    }
+
     /// How far the section of the side at the throat is beyond the bore, and in which direction.
-    fn throat(&self, peg: &Tilted, rim: Vector2<f64>, below_throat: f64) -> Excess {
+    fn at_throat(&self, peg: &Tilted, rim: Vector2<f64>, below_throat: f64) -> Excess {
         if below_throat <= 0.0 {
             return (f64::NEG_INFINITY, Vector2::x());
         }
         let middle = Vector2::new(rim.x - below_throat * peg.sin / peg.cos, rim.y);
         let along = self.peg_radius_mm / peg.cos;
         let section = Ellipse { middle, along, across: self.peg_radius_mm };
-        section.beyond(self.hole_radius_mm, along)
+        section.beyond(self.hole_radius_mm)
     }
 }
 
@@ -392,165 +433,6 @@ fn push_off(
 /// The direction a quarter turn on.
 fn across(along: &Vector2<f64>) -> Vector2<f64> {
     Vector2::new(-along.y, along.x)
-}
-
-/// How far something is beyond a wall, and the unit vector to where it is farthest.
-type Excess = (f64, Vector2<f64>);
-
-/// A point of an ellipse by its eccentric angle.
-#[derive(Clone, Copy)]
-struct Turn {
-    cos: f64,
-    sin: f64,
-}
-
-impl Turn {
-    /// Turned by a small angle: exactly a rotation, by the angle up to its cube.
-    fn by(self, angle: f64) -> Self {
-        let half = 0.5 * angle;
-        let shrink = 1.0 / (1.0 + half * half);
-        let (cos, sin) = ((1.0 - half * half) * shrink, angle * shrink);
-        Self { cos: self.cos * cos - self.sin * sin, sin: self.sin * cos + self.cos * sin }
-    }
-}
-
-/// An ellipse with its axes along and across the tilt.
-struct Ellipse {
-    middle: Vector2<f64>,
-    along: f64,
-    across: f64,
-}
-
-impl Ellipse {
-    fn point(&self, turn: Turn) -> Vector2<f64> {
-        self.middle + Vector2::new(self.along * turn.cos, self.across * turn.sin)
-    }
-
-    /// The distance of a point of the ellipse from the axis of the hole.
-    fn radius(&self, turn: Turn) -> f64 {
-        self.point(turn).norm()
-    }
-
-    /// The point farthest from the axis of the hole: Newton's method on the squared distance.
-    fn farthest(&self) -> Turn {
-        self.climb(0.0)
-    }
-
-    /// The point with the greatest distance from the axis of the hole plus `slope` times the cosine
-    /// of its angle, for a slope that is small against the ellipse.
-    fn climb(&self, slope: f64) -> Turn {
-        let stretch = self.across * self.across - self.along * self.along;
-        let y = self.middle.y * self.across;
-        let pull = |turn: Turn| {
-            let weight = if slope == 0.0 { 0.0 } else { slope * self.radius(turn) };
-            self.middle.x * self.along + weight
-        };
-        let mut turn = self.first_guess(pull(Turn { cos: 0.0, sin: 1.0 }), y, stretch);
-        for _ in 0..NEWTON_STEPS {
-            let Turn { cos, sin } = turn;
-            let x = pull(turn);
-            let rise = y * cos - x * sin + stretch * sin * cos;
-            let bend = -x * cos - y * sin + stretch * (cos * cos - sin * sin);
-            if bend >= 0.0 {
-                break;
-            }
-            let angle = (-rise / bend).clamp(-0.5, 0.5);
-            turn = turn.by(angle);
-            if angle.abs() < LAST_STEP_RAD {
-                break;
-            }
-        }
-        turn
-    }
-
-    /// On a circle the direction of the middle. In an ellipse that is nearly centred the two ends
-    /// of the longer axis are nearly as far, and the one on the side of the middle is taken.
-    fn first_guess(&self, x: f64, y: f64, stretch: f64) -> Turn {
-        let length = (x * x + y * y).sqrt();
-        let end = |side: f64| if side < 0.0 { -1.0 } else { 1.0 };
-        if length > stretch.abs() {
-            let scale = 1.0 / length;
-            Turn { cos: x * scale, sin: y * scale }
-        } else if stretch > 0.0 {
-            Turn { cos: 0.0, sin: end(y) }
-        } else {
-            Turn { cos: end(x), sin: 0.0 }
-        }
-    }
-
-    /// How far the ellipse is beyond a circle; `reach` is its longer half axis.
-    fn beyond(&self, circle: f64, reach: f64) -> Excess {
-        let away = self.middle.norm();
-        if away + reach <= circle + ROUNDING_MM {
-            return (away + reach - circle, Vector2::x());
-        }
-        self.excess_at(self.farthest(), circle)
-    }
-
-    fn excess_at(&self, turn: Turn, circle: f64) -> Excess {
-        let point = self.point(turn);
-        let radius = point.norm();
-        (radius - circle, point / radius)
-    }
-
-    /// How far the rim is beyond bore or cone, and on which of them.
-    fn excess(&self, fit: &Fit, peg: &Tilted) -> (Excess, Stage) {
-        let (bore, throat_z) = (fit.hole_radius_mm, fit.hole_chamfer_mm);
-        let dip = fit.peg_radius_mm * peg.sin;
-        if peg.rim_z - dip >= throat_z {
-            return (self.beyond(bore, fit.peg_radius_mm), Stage::OnePoint);
-        }
-        // Bore below the throat, cone above it, nothing above the face. The maximum is at that of
-        // one of the two, or where they end.
-        let mut worst = ((f64::NEG_INFINITY, Vector2::x()), Stage::Free);
-        let mut candidate = |turn: Turn| {
-            let above_throat = throat_z - (peg.rim_z - dip * turn.cos);
-            let (wall, stage) = if above_throat <= 0.0 {
-                (bore, Stage::OnePoint)
-            } else if above_throat <= throat_z + fit.peg_chamfer_mm + ROUNDING_MM {
-                (bore + above_throat, Stage::Chamfer)
-            } else {
-                return;
-            };
-            let excess = self.excess_at(turn, wall);
-            if excess.0 > worst.0.0 {
-                worst = (excess, stage);
-            }
-        };
-        candidate(self.farthest());
-        if dip > 0.0 {
-            candidate(self.climb(-dip));
-            for edge_z in [throat_z, -fit.peg_chamfer_mm] {
-                let cos = (peg.rim_z - edge_z) / dip;
-                if cos.abs() < 1.0 {
-                    let sin = (1.0 - cos * cos).sqrt();
-                    candidate(Turn { cos, sin });
-                    candidate(Turn { cos, sin: -sin });
-                }
-            }
-        }
-        worst
-    }
-
-    /// Between a point outside the mouth and one inside, the one on its edge.
-    fn edge_of_mouth(&self, mouth: f64, outside: Turn, inside: Turn) -> Turn {
-        let (mut out, mut into) = (outside, inside);
-        for _ in 0..48 {
-            let mut middle = Vector2::new(out.cos + into.cos, out.sin + into.sin);
-            if middle == Vector2::zeros() {
-                // Opposite to each other: either side will do.
-                middle = Vector2::new(-out.sin, out.cos);
-            }
-            let length = middle.norm();
-            let turn = Turn { cos: middle.x / length, sin: middle.y / length };
-            if self.radius(turn) > mouth {
-                out = turn;
-            } else {
-                into = turn;
-            }
-        }
-        out
-    }
 }
 
 #[cfg(test)]

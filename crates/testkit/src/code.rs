@@ -228,7 +228,7 @@ impl Body<'_, '_> {
                 }
             }
             3 => drop(self.code.push(op::PushConstant { constant: ConstantId(0) })),
-            0..=4 => self.read_int(but)?,
+            2 | 4 => self.read_int(but)?,
             choice => {
                 self.int(depth - 1, but)?;
                 self.int_operator(choice, depth, but)?;

@@ -18,6 +18,9 @@ use std::fmt::Debug;
 /// The longest run that is compared, in statements of the reference interpreter.
 const MAX_STEPS: u64 = 6_000;
 
+/// The deepest run that is compared, in calls: the reference interpreter recurses.
+const MAX_CALLS: usize = 128;
+
 /// Every generated program compiles without an error, and what comes of it verifies.
 ///
 /// # Errors
@@ -131,7 +134,7 @@ impl<'s> Case<'s> {
     fn reference(&self, seed: u64) -> Option<(Outcome, Logged)> {
         let parsed = obverse_syntax::parse(self.source);
         let mut cell = Logged::new(seed);
-        let limits = reference::Limits { steps: MAX_STEPS, ..reference::Limits::default() };
+        let limits = reference::Limits { steps: MAX_STEPS, calls: MAX_CALLS };
         let outcome = reference::run(&parsed.program, &mut cell, limits);
         (outcome.ending != Ending::Limit).then_some((outcome, cell))
     }

@@ -6,6 +6,149 @@
 //! the step loop saves, appends, acts; in reverse it reads, acts, and only then drops.
 //!
 //! `C` is what an opcode of a family may touch. Operands lie in the order of the stack picture.
+//!
+//! # What compiles, and what does not
+//!
+//! An opcode with one variable to touch:
+//!
+//! ```
+//! use obverse_isa::{LocalId, Prefix, op};
+//! use obverse_tape::record::Word;
+//! use obverse_vm::class::{AfterForward, Failure};
+//!
+//! struct Cell(u64);
+//!
+//! impl AfterForward<Cell> for op::StoreLocal {
+//!     type Saved = Word;
+//!
+//!     fn save(&self, cell: &Cell) -> Word {
+//!         Word(cell.0)
+//!     }
+//!
+//!     fn forward(self, cell: &mut Cell, _: &Word) -> Result<(), Failure> {
+//!         cell.0 = 7;
+//!         Ok(())
+//!     }
+//!
+//!     fn reverse(self, cell: &mut Cell, saved: &Word) -> Result<(), Failure> {
+//!         cell.0 = saved.0;
+//!         Ok(())
+//!     }
+//! }
+//!
+//! let op = op::StoreLocal { prefix: Prefix(1), local: LocalId(0) };
+//! let mut cell = Cell(3);
+//! // As the step loop does where the row says `after_forward(Word)`.
+//! let saved: Word = op.save(&cell);
+//! op.forward(&mut cell, &saved)?;
+//! op.reverse(&mut cell, &saved)?;
+//! assert_eq!(cell.0, 3);
+//! # Ok::<(), Failure>(())
+//! ```
+//!
+//! The same where the row says `always`, a class that saves nothing:
+//!
+//! ```compile_fail,E0277
+//! # use obverse_isa::{LocalId, Prefix, op};
+//! # use obverse_tape::record::Word;
+//! # use obverse_vm::class::{AfterForward, Always, Failure};
+//! #
+//! # struct Cell(u64);
+//! #
+//! # impl AfterForward<Cell> for op::StoreLocal {
+//! #     type Saved = Word;
+//! #
+//! #     fn save(&self, cell: &Cell) -> Word {
+//! #         Word(cell.0)
+//! #     }
+//! #
+//! #     fn forward(self, cell: &mut Cell, _: &Word) -> Result<(), Failure> {
+//! #         cell.0 = 7;
+//! #         Ok(())
+//! #     }
+//! #
+//! #     fn reverse(self, cell: &mut Cell, saved: &Word) -> Result<(), Failure> {
+//! #         cell.0 = saved.0;
+//! #         Ok(())
+//! #     }
+//! # }
+//! #
+//! # let op = op::StoreLocal { prefix: Prefix(1), local: LocalId(0) };
+//! fn where_the_row_says_always(op: impl Always<Cell>) {}
+//! where_the_row_says_always(op);
+//! ```
+//!
+//! Without its reverse:
+//!
+//! ```compile_fail,E0046
+//! # use obverse_isa::{LocalId, Prefix, op};
+//! # use obverse_tape::record::Word;
+//! # use obverse_vm::class::{AfterForward, Failure};
+//! #
+//! # struct Cell(u64);
+//! impl AfterForward<Cell> for op::StoreLocal {
+//!     type Saved = Word;
+//!
+//!     fn save(&self, cell: &Cell) -> Word {
+//!         Word(cell.0)
+//!     }
+//!
+//!     fn forward(self, cell: &mut Cell, _: &Word) -> Result<(), Failure> {
+//!         cell.0 = 7;
+//!         Ok(())
+//!     }
+//! }
+//! ```
+//!
+//! With a record of another kind than the row's:
+//!
+//! ```compile_fail,E0308
+//! # use obverse_isa::{LocalId, Prefix, op};
+//! # use obverse_tape::record::{Bit, Word};
+//! # use obverse_vm::class::{AfterForward, Failure};
+//! #
+//! # struct Cell(u64);
+//! #
+//! # impl AfterForward<Cell> for op::StoreLocal {
+//! #     type Saved = Word;
+//! #
+//! #     fn save(&self, cell: &Cell) -> Word {
+//! #         Word(cell.0)
+//! #     }
+//! #
+//! #     fn forward(self, cell: &mut Cell, _: &Word) -> Result<(), Failure> {
+//! #         cell.0 = 7;
+//! #         Ok(())
+//! #     }
+//! #
+//! #     fn reverse(self, cell: &mut Cell, saved: &Word) -> Result<(), Failure> {
+//! #         cell.0 = saved.0;
+//! #         Ok(())
+//! #     }
+//! # }
+//! #
+//! # let op = op::StoreLocal { prefix: Prefix(1), local: LocalId(0) };
+//! let cell = Cell(3);
+//! // Where the row says `after_forward(Bit)`.
+//! let saved: Bit = op.save(&cell);
+//! ```
+//!
+//! A reverse of what has none:
+//!
+//! ```compile_fail,E0599
+//! # use obverse_isa::{ReasonId, op};
+//! # use obverse_vm::class::{Failure, Never};
+//! #
+//! # struct Cell(u64);
+//! impl Never<Cell> for op::Barrier {
+//!     fn forward(self, cell: &mut Cell) -> Result<(), Failure> {
+//!         cell.0 = 7;
+//!         Ok(())
+//!     }
+//! }
+//!
+//! op::Barrier { reason: ReasonId(0) }.reverse(&mut Cell(3));
+//! ```
 
 use crate::stop::TrapKind;
 use crate::values::Values;

@@ -382,7 +382,8 @@ impl<'s> Checker<'s> {
         let Some(block) = block else {
             let setting = value.setting();
             if self.frame.modal.iter().all(|(known, _)| *known != setting) {
-                let former = self.hidden(name, of_type, span);
+                // Written when the sequence begins, so that no scope before may have it too.
+                let former = self.hidden(&format!("initial_{name}"), of_type, span);
                 self.frame.modal.push((setting, former));
             }
             return Some((self.done(StatementKind::Set(value), span), true));

@@ -81,7 +81,7 @@ impl Generator<'_, '_> {
             Type::Force => format!("-{} N", self.below(90)?),
             _ => format!("{} deg", self.below(90)?),
         };
-        let declared = match of_type.has_name() && self.one_in(3)? {
+        let declared = match self.one_in(3)? {
             true => format!(": {}", of_type.name()),
             false => String::new(),
         };
@@ -217,11 +217,7 @@ impl Generator<'_, '_> {
     fn parameter_type(&mut self) -> Result<Type> {
         let of_type = self.choose(&Type::OF_VARIABLES)?;
         let wants_item = !self.items.is_empty() && self.one_in(4)?;
-        Ok(match of_type {
-            _ if wants_item => Type::Item,
-            of_type if of_type.has_name() => of_type,
-            _ => Type::Length,
-        })
+        Ok(if wants_item { Type::Item } else { of_type })
     }
 
     /// A call of the sequence in hand by itself, with less left to go.

@@ -34,11 +34,6 @@ impl Type {
         Self::Joints,
     ];
 
-    /// Whether its name can be written: `force` is a reading.
-    pub(super) fn has_name(self) -> bool {
-        self != Self::Force
-    }
-
     /// As declared.
     pub(super) fn name(self) -> &'static str {
         match self {

@@ -48,7 +48,7 @@ impl Generator<'_, '_> {
                 self.declare(&name, of_type, true);
                 return Ok(());
             }
-            _ if of_type.has_name() && self.one_in(3)? => format!(": {}", of_type.name()),
+            _ if self.one_in(3)? => format!(": {}", of_type.name()),
             _ => String::new(),
         };
         self.line(&format!("var {name}{declared} = {value}"));

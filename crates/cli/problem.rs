@@ -1,0 +1,84 @@
+//! Why a command was not carried out: messages with their places, or the diagnostics of a source.
+//!
+//! Data alone; how it is shown is in `show`.
+
+use obverse_syntax::diagnostic::Diagnostic;
+use std::path::Path;
+
+/// Why a command was not carried out.
+#[derive(Debug)]
+pub(crate) struct Problem {
+    /// What is wrong.
+    pub(crate) messages: Vec<Message>,
+    /// Diagnostics of a source text.
+    pub(crate) source: Option<Diagnosed>,
+}
+
+/// A sentence about a file, or about the command line.
+#[derive(Clone, Debug)]
+pub(crate) struct Message {
+    /// The file as the command line named it, or as the one that did names it.
+    pub(crate) file: Option<String>,
+    /// Line and column, from 1.
+    pub(crate) place: Option<(usize, usize)>,
+    /// What is wrong there.
+    pub(crate) text: String,
+}
+
+/// A source text and what is wrong with it.
+#[derive(Clone, Debug)]
+pub(crate) struct Diagnosed {
+    /// The file.
+    pub(crate) name: String,
+    /// Its text.
+    pub(crate) text: String,
+    /// Errors and warnings, by place.
+    pub(crate) diagnostics: Vec<Diagnostic>,
+}
+
+impl Problem {
+    /// Something wrong with the command line.
+    pub(crate) fn new(text: impl Into<String>) -> Self {
+        Self::several(vec![Message { file: None, place: None, text: text.into() }])
+    }
+
+    /// Something wrong with a file.
+    pub(crate) fn of_file(path: &Path, text: impl ToString) -> Self {
+        Self::several(vec![Message::of_file(path, text)])
+    }
+
+    /// Several messages.
+    pub(crate) fn several(messages: Vec<Message>) -> Self {
+        Self { messages, source: None }
+    }
+
+    /// What is wrong with a source text.
+    pub(crate) fn in_source(diagnosed: Diagnosed) -> Self {
+        Self { messages: Vec::new(), source: Some(diagnosed) }
+    }
+}
+
+impl Message {
+    /// A sentence about a file.
+    pub(crate) fn of_file(path: &Path, text: impl ToString) -> Self {
+        Self { file: Some(path.display().to_string()), place: None, text: text.to_string() }
+    }
+
+    /// The same at a line and column, if they are known.
+    pub(crate) fn at(self, place: Option<(usize, usize)>) -> Self {
+        Self { place, ..self }
+    }
+}
+
+impl std::fmt::Display for Message {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        if let Some(file) = &self.file {
+            write!(f, "{file}:")?;
+            if let Some((line, column)) = self.place {
+                write!(f, "{line}:{column}:")?;
+            }
+            write!(f, " ")?;
+        }
+        f.write_str(&self.text)
+    }
+}
