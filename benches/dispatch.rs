@@ -62,7 +62,7 @@ fn figures(_: &mut Criterion) {
             best[0] = best[0].min(timed(&mut plain, Direction::Forward, &mut cell));
             best[1] = best[1].min(timed(&mut taped, Direction::Forward, &mut cell));
             instructions = taped.state().steps();
-            bits = taped.tape().map_or(0, |tape| tape.recorded_bits());
+            bits = taped.tape().map_or(0, obverse_tape::Tape::recorded_bits);
             best[2] = best[2].min(timed(&mut taped, Direction::Reverse, &mut cell));
         }
         let [plain, forward, reverse] = best.map(|took| took.as_secs_f64());

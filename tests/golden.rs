@@ -2,10 +2,10 @@
 //! switch, `UPDATE=1 cargo test --test golden`, that writes what is rendered now.
 //!
 //! ```text
-//! diag/NAME.obv      what `obverse check` says of a program that is wrong: NAME.txt. `//~ E0201` at
-//!                    the end of a line says which diagnostics begin there, `//~^ E0201` alone on a
-//!                    line those of the line above; asserted, never written
-//! compile/NAME.obv   its disassembly: NAME.obvasm
+//! diag/NAME.obv      what `obverse check` says of a program that is wrong: NAME.txt. `//~ E0201`
+//!                    at the end of a line says which diagnostics begin there, `//~^ E0201` alone
+//!                    on a line those of the line above; asserted, never written
+//! compile/NAME.obv   its disassembly but for the source text: NAME.obvasm
 //! run/NAME.obv       what `obverse run` tells: NAME.txt, and what `obverse back`: back/NAME.txt
 //! asm/NAME.obvasm    what is wrong with assembly text, or with the module that it says: NAME.txt
 //! ```
@@ -90,9 +90,12 @@ fn path(file: &str) -> PathBuf {
     Path::new(FOLDER).join(file)
 }
 
+fn bytes(file: &str) -> Result<Vec<u8>, Failed> {
+    Ok(std::fs::read(path(file)).map_err(|error| format!("{file}: {error}"))?)
+}
+
 fn text(file: &str) -> Result<String, Failed> {
-    let bytes = std::fs::read(path(file)).map_err(|error| format!("{file}: {error}"))?;
-    Ok(String::from_utf8_lossy(&bytes).into_owned())
+    Ok(String::from_utf8_lossy(&bytes(file)?).into_owned())
 }
 
 impl Golden {
@@ -167,7 +170,8 @@ fn compiled(file: &str) -> Result<String, Failed> {
         return Err("its disassembly is of another module".into());
     }
     verify(module).map_err(|errors| listed(&errors))?;
-    Ok(listing)
+    let (code, _source) = listing.split_once("\n.source").ok_or("it lacks its source")?;
+    Ok(code.to_owned())
 }
 
 fn refused(file: &str) -> Result<String, Failed> {
@@ -182,8 +186,11 @@ fn refused(file: &str) -> Result<String, Failed> {
 
 /// What `obverse check` says, if the diagnostics are those that the source says that it has.
 fn diagnosed(file: &str) -> Result<String, Failed> {
-    let (source, said) = (text(file)?, said(file)?);
-    let found = placed(&source, &obverse_compiler::compile(file, &source).diagnostics);
+    let (bytes, said) = (bytes(file)?, said(file)?);
+    let found = match obverse_syntax::text_of(&bytes) {
+        Ok(source) => placed(source, &obverse_compiler::compile(file, source).diagnostics),
+        Err(diagnostic) => placed("", &[*diagnostic]),
+    };
     if found != said {
         return Err(format!("it says that it has {said:?}, and it has {found:?}").into());
     }

@@ -1,5 +1,5 @@
-//! Laws of the instruction table, and its reference page. `UPDATE=1 cargo test --test isa` writes the
-//! page. That an opcode's code fits its class is the compiler's to say: see `obverse_vm::class`.
+//! Laws of the instruction table, and its reference page, which `UPDATE=1 cargo test --test isa`
+//! writes. That an opcode's code fits its class is the compiler's to say: see `obverse_vm::class`.
 
 use obverse_isa::{
     Class, DecodeError, Family, INSTR_BYTES, Instr, OPS, OpInfo, Opcode, OperandError, OperandKind,

@@ -1,7 +1,8 @@
 //! Programs and workcells from files, whatever they contain.
 
-use crate::problem::{Diagnosed, Message, Problem};
+use crate::problem::{Diagnosed, Message, Problem, plain};
 use crate::show;
+use obverse_bytecode::codec::MODULE;
 use obverse_bytecode::{Module, Verified, assemble, decode, verify};
 use obverse_sim::{Cell, Sim};
 use obverse_vm::{LinkError, Machine};
@@ -44,47 +45,34 @@ pub(crate) fn bytes(path: &Path) -> Result<Vec<u8>, Problem> {
     Ok(bytes)
 }
 
-/// An error of the system without its number.
-fn plain(error: &std::io::Error) -> String {
-    let text = error.to_string();
-    match text.split_once(" (os error") {
-        Some((words, _)) => words.to_lowercase(),
-        None => text,
-    }
-}
-
-fn extension(path: &Path) -> &str {
-    path.extension().and_then(|extension| extension.to_str()).unwrap_or("")
-}
-
-/// The module of a file: source (`.obv`), assembly text (`.obvasm`) or a module (`.obc`), with the
-/// source text and its warnings, if there is one. It is not verified.
+/// The module of a file, not verified, with the source text and its warnings, if there is one. The
+/// file is a module by its first bytes, assembly text by its name (`.obvasm`), and source otherwise.
 pub(crate) fn module(path: &Path) -> Result<(Module, Option<Diagnosed>), Problem> {
-    match extension(path) {
-        "obc" => {
-            let module = decode(&bytes(path)?).map_err(|error| Problem::of_file(path, error))?;
-            Ok((module, None))
-        }
-        "obvasm" => Ok((assembled(path)?, None)),
-        "tape" => {
-            let why = format!("this is a tape; `obverse tape {}` shows it", path.display());
-            Err(Problem::of_file(path, why))
-        }
+    let raw = bytes(path)?;
+    let extension = path.extension().and_then(|extension| extension.to_str()).unwrap_or("");
+    if extension == "tape" {
+        let why = format!("this is a tape; `obverse tape {}` shows it", path.display());
+        return Err(Problem::of_file(path, why));
+    }
+    if raw.starts_with(&MODULE.magic) || extension == "obc" {
+        let module = decode(&raw).map_err(|error| Problem::of_file(path, error))?;
+        return Ok((module, None));
+    }
+    match extension {
+        "obvasm" => Ok((assembled(path, &raw)?, None)),
         "toml" => {
             Err(Problem::of_file(path, "this is a workcell; name the program that runs in it"))
         }
-        _ => compiled(path).map(|(module, diagnosed)| (module, Some(diagnosed))),
+        _ => compiled(path, &raw).map(|(module, diagnosed)| (module, Some(diagnosed))),
     }
 }
 
-fn compiled(path: &Path) -> Result<(Module, Diagnosed), Problem> {
-    let raw = bytes(path)?;
+fn compiled(path: &Path, raw: &[u8]) -> Result<(Module, Diagnosed), Problem> {
     let name = path.display().to_string();
-    let text = match obverse_syntax::text_of(&raw) {
+    let text = match obverse_syntax::text_of(raw) {
         Ok(text) => text,
         Err(diagnostic) => {
-            let text = String::from_utf8_lossy(&raw).into_owned();
-            let diagnostics = vec![*diagnostic];
+            let (text, diagnostics) = (String::new(), vec![*diagnostic]);
             return Err(Problem::in_source(Diagnosed { name, text, diagnostics }));
         }
     };
@@ -98,9 +86,8 @@ fn compiled(path: &Path) -> Result<(Module, Diagnosed), Problem> {
     }
 }
 
-fn assembled(path: &Path) -> Result<Module, Problem> {
-    let raw = bytes(path)?;
-    let text = std::str::from_utf8(&raw)
+fn assembled(path: &Path, raw: &[u8]) -> Result<Module, Problem> {
+    let text = std::str::from_utf8(raw)
         .map_err(|error| Problem::of_file(path, format!("not text: {error}")))?;
     assemble(text).map_err(|errors| {
         let message = |error: &obverse_bytecode::AsmError| {

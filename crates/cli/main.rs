@@ -1,7 +1,8 @@
 //! The command line of Obverse: the only crate that prints, exits and reads the environment.
 //!
-//! Each command stands in a file of its own under `commands`; [`load`] brings programs and workcells
-//! from files, [`story`] tells a run to people, [`report`] to machines, [`show`] shows a [`problem`].
+//! Each command stands in a file of its own under `commands`; [`load`] brings programs and
+//! workcells from files, [`story`] tells a run to people, [`report`] to machines, [`show`] shows a
+//! [`problem`].
 
 mod commands;
 mod load;

@@ -82,3 +82,12 @@ impl std::fmt::Display for Message {
         f.write_str(&self.text)
     }
 }
+
+/// An error of the system in plain words, without its number.
+pub(crate) fn plain(error: &std::io::Error) -> String {
+    let text = error.to_string();
+    match text.split_once(" (os error") {
+        Some((words, _)) => words.to_lowercase(),
+        None => text,
+    }
+}

@@ -62,7 +62,7 @@ pub(crate) fn figures(machine: &Machine<'_>, cell: &dyn Workcell) -> Map<String,
     let mut object = Map::new();
     object.insert("instructions".to_owned(), json!(machine.executed()));
     object.insert("commands".to_owned(), json!(machine.commands()));
-    object.insert("tape_bits".to_owned(), json!(tape.map_or(0, |tape| tape.recorded_bits())));
+    object.insert("tape_bits".to_owned(), json!(tape.map_or(0, obverse_tape::Tape::recorded_bits)));
     object.insert("time_s".to_owned(), json!(cell.now_s()));
     object.insert("digest".to_owned(), json!(format!("{:016x}", machine.digest(cell))));
     object

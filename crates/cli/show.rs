@@ -1,12 +1,17 @@
 //! Diagnostics and other problems: for people on standard error, for machines as JSON.
 
 use crate::problem::{Diagnosed, Message, Problem};
+use crate::write::printable;
 use ariadne::{CharSet, Color, Config, IndexType, Label, Report, ReportKind, Source};
-use obverse_syntax::diagnostic::{Diagnostic, Severity};
+use obverse_syntax::codes::Code;
+use obverse_syntax::diagnostic::{self, Diagnostic, Severity};
 use obverse_syntax::source::LineIndex;
 use obverse_syntax::span::Span;
 use serde_json::{Value, json};
 use std::io::{IsTerminal, Write};
+
+/// Lines longer than these, in bytes, are not drawn.
+const DRAWN_MAX: usize = 400;
 
 /// Show why a command was not carried out.
 pub(crate) fn problem(problem: &Problem) {
@@ -15,15 +20,20 @@ pub(crate) fn problem(problem: &Problem) {
     }
     let messages: Vec<String> =
         problem.messages.iter().map(|message| format!("error: {message}\n")).collect();
-    to_stderr(messages.concat().as_bytes());
+    to_stderr(printable(&messages.concat()).as_bytes());
 }
 
 /// Show the diagnostics of a source text, and how many there are.
 pub(crate) fn diagnostics(diagnosed: &Diagnosed) {
     let mut shown = Vec::new();
     let is_terminal = std::io::stderr().is_terminal();
+    let text = printable(&diagnosed.text);
+    let lines = LineIndex::new(&text);
     for diagnostic in &diagnosed.diagnostics {
-        render(&diagnosed.name, &diagnosed.text, diagnostic, is_terminal, &mut shown);
+        match is_drawn(&lines, diagnostic) {
+            true => draw(&diagnosed.name, &text, diagnostic, is_terminal, &mut shown),
+            false => write_out(&diagnosed.name, &lines, diagnostic, &mut shown),
+        }
     }
     let total = counted(&diagnosed.diagnostics);
     if !total.is_empty() {
@@ -54,7 +64,33 @@ fn to_stderr(bytes: &[u8]) {
     let _ = std::io::stderr().lock().write_all(bytes);
 }
 
-fn render(name: &str, text: &str, diagnostic: &Diagnostic, color: bool, shown: &mut Vec<u8>) {
+/// Whether a diagnostic can be drawn into its source: there is one, with lines that fit a screen.
+fn is_drawn(lines: &LineIndex<'_>, diagnostic: &Diagnostic) -> bool {
+    let is_short = |label: &diagnostic::Label| {
+        let (start, end) = (lines.position(label.span.start), lines.position(label.span.end));
+        let length = |line| lines.line_text(line).len();
+        length(start.line) <= DRAWN_MAX && length(end.line) <= DRAWN_MAX
+    };
+    let mut labels = std::iter::once(&diagnostic.primary).chain(&diagnostic.labels);
+    diagnostic.code != Code::NotText && labels.all(is_short)
+}
+
+/// A diagnostic without the source: message, places, notes and help, a line each.
+fn write_out(name: &str, lines: &LineIndex<'_>, diagnostic: &Diagnostic, shown: &mut Vec<u8>) {
+    let kind = match diagnostic.severity {
+        Severity::Error => "Error",
+        Severity::Warning => "Warning",
+    };
+    let mut told = format!("[{}] {kind}: {}\n", diagnostic.code, diagnostic.message);
+    for label in std::iter::once(&diagnostic.primary).chain(&diagnostic.labels) {
+        told += &format!("   {name}:{}: {}\n", lines.position(label.span.start), label.text);
+    }
+    diagnostic.notes.iter().for_each(|note| told += &format!("   Note: {note}\n"));
+    diagnostic.help.iter().for_each(|help| told += &format!("   Help: {help}\n"));
+    shown.extend_from_slice(told.as_bytes());
+}
+
+fn draw(name: &str, text: &str, diagnostic: &Diagnostic, color: bool, shown: &mut Vec<u8>) {
     let (kind, main_color) = match diagnostic.severity {
         Severity::Error => (ReportKind::Error, Color::Red),
         Severity::Warning => (ReportKind::Warning, Color::Yellow),

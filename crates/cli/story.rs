@@ -17,42 +17,65 @@ const DEPTH_MAX: usize = 10;
 /// Tells a run as it happens.
 pub(crate) struct Story<'m> {
     module: &'m Module,
-}
-
-impl<'m> Story<'m> {
-    pub(crate) fn new(module: &'m Module) -> Self {
-        Self { module }
-    }
-}
-
-impl Observer for Story<'_> {
-    fn on_event(&mut self, event: &Event, cell: &dyn Workcell) {
-        let Some(told) = heading(self.module, event).or_else(|| act(self.module, event, cell))
-        else {
-            return;
-        };
-        let arrow = match event.direction {
-            Direction::Forward => ' ',
-            Direction::Reverse => '<',
-        };
-        let indent = "  ".repeat(told.depth.saturating_sub(2).min(DEPTH_MAX));
-        let text = format!("{indent}{}", told.text);
-        let time = format!("{:.2} s", cell.now_s());
-        let line = format!("{time:>9} {arrow} {text:<TEXT_COLUMNS$} {}", told.outcome);
-        write::line(line.trim_end());
-    }
+    /// The headings under which nothing has been told yet, outermost first.
+    headings: Vec<Told>,
 }
 
 /// A line of the story.
 struct Told {
+    time_s: f64,
+    direction: Direction,
     /// How many calls are under way around it.
     depth: usize,
     text: String,
     outcome: String,
 }
 
+impl<'m> Story<'m> {
+    pub(crate) fn new(module: &'m Module) -> Self {
+        Self { module, headings: Vec::new() }
+    }
+
+    /// Say where the program is, whatever comes next.
+    pub(crate) fn tell_headings(&mut self) {
+        self.headings.drain(..).for_each(|heading| heading.write());
+    }
+}
+
+impl Observer for Story<'_> {
+    fn on_event(&mut self, event: &Event, cell: &dyn Workcell) {
+        let is_left = match event.direction {
+            Direction::Forward => matches!(event.instr, Instr::Return { .. }),
+            Direction::Reverse => matches!(event.instr, Instr::Call { .. }),
+        };
+        if is_left {
+            // Nothing happened under a heading that is still here: it is not told.
+            self.headings.retain(|heading| heading.depth < event.frames);
+        } else if let Some(heading) = heading(self.module, event, cell) {
+            self.headings.push(heading);
+        } else if let Some(told) = act(self.module, event, cell) {
+            self.tell_headings();
+            told.write();
+        }
+    }
+}
+
+impl Told {
+    fn write(&self) {
+        let arrow = match self.direction {
+            Direction::Forward => ' ',
+            Direction::Reverse => '<',
+        };
+        let indent = "  ".repeat(self.depth.saturating_sub(2).min(DEPTH_MAX));
+        let text = format!("{indent}{}", self.text);
+        let time = format!("{:.2} s", self.time_s);
+        let line = format!("{time:>9} {arrow} {text:<TEXT_COLUMNS$} {}", self.outcome);
+        write::line(line.trim_end());
+    }
+}
+
 /// The line over what a sequence does: where it is called, or, going back, where its end is passed.
-fn heading(module: &Module, event: &Event) -> Option<Told> {
+fn heading(module: &Module, event: &Event, cell: &dyn Workcell) -> Option<Told> {
     let depth = event.frames.saturating_sub(1);
     let (text, outcome) = match (event.instr, event.direction) {
         (Instr::Call { function, .. }, Direction::Forward) => {
@@ -67,13 +90,26 @@ fn heading(module: &Module, event: &Event) -> Option<Told> {
         }
         _ => return None,
     };
-    Some(Told { depth, text, outcome: outcome.to_owned() })
+    Some(Told {
+        time_s: cell.now_s(),
+        direction: event.direction,
+        depth,
+        text,
+        outcome: outcome.to_owned(),
+    })
 }
 
 /// What an instruction did, if it is worth telling.
 fn act(module: &Module, event: &Event, cell: &dyn Workcell) -> Option<Told> {
     let outcome = outcome_of(module, event, cell)?;
-    Some(Told { depth: event.frames, text: text_of(module, event), outcome })
+    let text = text_of(module, event);
+    Some(Told {
+        time_s: cell.now_s(),
+        direction: event.direction,
+        depth: event.frames,
+        text,
+        outcome,
+    })
 }
 
 /// A call in the program's words: `action pick(block_a)`.

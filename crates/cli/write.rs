@@ -1,6 +1,7 @@
 //! Output: to a file whole or not at all, and to a standard output that may be closed any time.
 
-use crate::problem::Problem;
+use crate::problem::{Problem, plain};
+use std::borrow::Cow;
 use std::fs;
 use std::io::{self, ErrorKind, Write};
 use std::path::Path;
@@ -36,8 +37,8 @@ fn is_same(a: &Path, b: &Path) -> bool {
     }
 }
 
-/// Write a file by way of a neighbour that takes its name only when it is complete, so that what was
-/// there is kept if anything goes wrong.
+/// Write a file by way of a neighbour that takes its name only when it is complete, so that what
+/// was there is kept if anything goes wrong.
 pub(crate) fn file(path: &Path, bytes: &[u8]) -> Result<(), Problem> {
     let name = path.file_name().map(|name| name.to_string_lossy().into_owned());
     let Some(name) = name else {
@@ -50,21 +51,41 @@ pub(crate) fn file(path: &Path, bytes: &[u8]) -> Result<(), Problem> {
     written.map_err(|error| {
         // What could not be written need not stay; that it cannot be removed changes nothing.
         let _ = fs::remove_file(&neighbour);
-        Problem::of_file(path, format!("cannot be written: {error}"))
+        Problem::of_file(path, format!("cannot be written: {}", plain(&error)))
     })
+}
+
+/// A text without what would command a terminal; every byte stays in its place.
+pub(crate) fn printable(text: &str) -> Cow<'_, str> {
+    let is_command = |c: char| c.is_control() && !matches!(c, '\n' | '\r' | '\t');
+    if !text.contains(is_command) {
+        return Cow::Borrowed(text);
+    }
+    let mut kept = String::with_capacity(text.len());
+    for c in text.chars() {
+        match is_command(c) {
+            true => kept.extend(std::iter::repeat_n('?', c.len_utf8())),
+            false => kept.push(c),
+        }
+    }
+    Cow::Owned(kept)
 }
 
 /// Print text. A reader that has gone away ends the process quietly, as a pipe's writer should; any
 /// other failure is an error.
 pub(crate) fn out(text: &str) {
     let mut stdout = io::stdout().lock();
-    let Err(error) = stdout.write_all(text.as_bytes()).and_then(|()| stdout.flush()) else {
+    let Err(error) = stdout.write_all(printable(text).as_bytes()).and_then(|()| stdout.flush())
+    else {
         return;
     };
     if error.kind() == ErrorKind::BrokenPipe {
         std::process::exit(0);
     }
-    crate::show::problem(&Problem::new(format!("standard output: cannot be written: {error}")));
+    crate::show::problem(&Problem::new(format!(
+        "standard output cannot be written: {}",
+        plain(&error)
+    )));
     std::process::exit(2);
 }
 

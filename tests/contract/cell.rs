@@ -1,5 +1,5 @@
-//! The workcell that contracts run on: the bookkeeping one, with a log of what it was commanded, and
-//! with readings and draws that are said beforehand.
+//! The workcell that contracts run on: the bookkeeping one, with a log of what it was commanded,
+//! and with readings and draws that are said beforehand.
 
 use obverse_geometry::{JointConfiguration, Pose};
 use obverse_testkit::Ledger;

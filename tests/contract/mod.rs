@@ -15,29 +15,30 @@
 //! ;; back:    joints = a  stack = [b]  commands = [move joint to a]
 //! ```
 //!
-//! What stands before the first case belongs to every case. A case without `.function` is the body of
-//! the start, and `enter` and `halt` are put around it. It runs, a step at a time, up to the
+//! What stands before the first case belongs to every case. A case without `.function` is the body
+//! of the start, and `enter` and `halt` are put around it. It runs, a step at a time, up to the
 //! instruction under `before:`, makes one step more, and then one back.
 //!
-//! - `given:` sets the workcell up: `joints`, `output N`, and what it will answer: `input N`, `force`,
-//!   `draw N`. `stopped = 0.5` stops the act half way, `in_the_way = 0.5` is there for a motion with
-//!   a force limit to meet. With `visit = 2` it is the second time that control comes there.
+//! - `given:` sets the workcell up: `joints`, `output N`, and what it will answer: `input N`,
+//!   `force`, `draw N`. `stopped = 0.5` stops the act half way, `in_the_way = 0.5` is there for a
+//!   motion with a force limit to meet. With `visit = 2` it is the second time that control comes
+//!   there.
 //! - `before:` is what its clauses say, and may say little.
 //! - `after:` is *exactly* the state before with what the clauses change, a step further. `tape +=`
 //!   is what was recorded; `commands` is what the workcell was told, nothing if it is left out;
-//!   `lands = LABEL` is behind that join, `at = LABEL` before that instruction; else control is at the
-//!   next instruction. `trap`, `fault`, `raises`, `stop` say why the step was not an ordinary one;
-//!   after a trap the state is that before the statement, and nothing is left to say.
+//!   `lands = LABEL` is behind that join, `at = LABEL` before that instruction; else control is at
+//!   the next instruction. `trap`, `fault`, `raises`, `stop` say why the step was not an ordinary
+//!   one; after a trap the state is that before the statement, and nothing is left to say.
 //! - `back:` is exactly the state before, to the bit, and its clauses only repeat what of that is
 //!   worth seeing; `refused = ".."` is a never, for the program's reason. `at = LABEL` is the state
 //!   that was there when control was at that instruction. `back, with:` is the same state but for
 //!   what the clauses say, for those opcodes that restore less by the programmer's own word.
 //!   `back in 3 steps:` makes so many.
 //!
-//! Clauses are `key = value`; other keys are the names of locals of the innermost frame, of globals,
-//! and `stack`, `calls`, `counter N`, `slot NAME`, `joints`, `output N`, `speed`, `tool`, `raised`,
-//! `draws`, `blocks`, `pending`. A `;;` line that begins with no such word goes on with the one
-//! above.
+//! Clauses are `key = value`; other keys are the names of locals of the innermost frame, of
+//! globals, and `stack`, `calls`, `counter N`, `slot NAME`, `joints`, `output N`, `speed`, `tool`,
+//! `raised`, `draws`, `blocks`, `pending`. A `;;` line that begins with no such word goes on with
+//! the one above.
 
 mod cell;
 pub(crate) mod picture;

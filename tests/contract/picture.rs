@@ -102,8 +102,8 @@ pub(crate) struct Words<'m> {
 }
 
 impl Words<'_> {
-    /// Change a picture by a clause. `found` is what is there, for what is not a number: no two need
-    /// have the same bits. `pc` is the instruction that is stepped over.
+    /// Change a picture by a clause. `found` is what is there, for what is not a number: no two
+    /// need have the same bits. `pc` is the instruction that is stepped over.
     pub(crate) fn apply(
         &self,
         picture: &mut Picture,

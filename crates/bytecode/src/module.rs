@@ -1,6 +1,6 @@
 //! A module as data: tables, functions, code, and the map back to the source.
 //!
-//! Indices are into the tables of the same module; [`verify`](crate::verify) says what must hold of
+//! Indices are into the tables of the same module; [`verify`](mod@crate::verify) says what must hold of
 //! them. Lengths are metres, angles radians, times seconds.
 
 use obverse_isa::{Instr, Type};

@@ -10,7 +10,7 @@ pub(crate) struct Arguments {
     /// The program: source or assembly text.
     file: PathBuf,
     /// The module to write; beside the program, with the extension `.obc`, where none is named.
-    #[arg(short, long)]
+    #[arg(short, long, value_name = "FILE")]
     output: Option<PathBuf>,
 }
 

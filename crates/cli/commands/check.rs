@@ -13,7 +13,7 @@ pub(crate) struct Arguments {
     /// The program: source, assembly text or module.
     file: PathBuf,
     /// The workcell file, in place of the one that the program names.
-    #[arg(long)]
+    #[arg(long, value_name = "FILE")]
     cell: Option<PathBuf>,
     /// For machines: JSON Lines, an object a diagnostic and a summary last.
     #[arg(long)]

@@ -2,7 +2,7 @@
 
 use super::Result;
 use crate::{Outcome, write};
-use obverse_isa::{Class, FINGERPRINT, OPS, OpInfo, reference};
+use obverse_isa::{Class, FINGERPRINT, OPS, OpInfo, OperandKind, reference};
 use serde_json::{Value, json};
 
 #[derive(clap::Args)]
@@ -31,7 +31,10 @@ fn row(info: &OpInfo) -> Value {
         Class::AfterForward(kind) => (Some(kind.name()), None),
         Class::Never(why) => (None, Some(why)),
     };
-    let operand = |(name, kind): &(&str, obverse_isa::OperandKind)| json!({ "name": name, "kind": format!("{kind:?}").to_lowercase() });
+    let operand = |(name, kind): &(&str, OperandKind)| {
+        let kind = format!("{kind:?}").to_lowercase();
+        json!({ "name": name, "kind": kind })
+    };
     let words = |items: &[obverse_isa::StackItem]| {
         items.iter().map(ToString::to_string).collect::<Vec<_>>()
     };
@@ -50,22 +53,32 @@ fn row(info: &OpInfo) -> Value {
 }
 
 fn listing() -> String {
+    let rows: Vec<[String; 3]> = OPS.iter().map(columns).collect();
+    let width = |column: usize| {
+        rows.iter().map(|row| row[column].chars().count()).max().unwrap_or_default()
+    };
+    let [mnemonic, class, stack] = [0, 1, 2].map(width);
     let mut text = String::new();
     let mut family = None;
-    for info in OPS {
+    for (info, row) in OPS.iter().zip(&rows) {
         if family.replace(info.family) != Some(info.family) {
             text.push_str(&format!("\n{}\n", info.family.name()));
         }
         let summary = reference::prose(info);
-        let summary = summary.split(". ").next().unwrap_or_default();
+        let summary = summary.split(". ").next().unwrap_or_default().trim_end_matches('.');
         text.push_str(&format!(
-            "  {:02x}  {:24} {:22} {:30} {}\n",
-            info.code,
-            info.mnemonic,
-            info.class.name(),
-            reference::stack_picture(info),
-            summary.trim_end_matches('.')
+            "  {:02x}  {:mnemonic$}  {:class$}  {:stack$}  {summary}\n",
+            info.code, row[0], row[1], row[2],
         ));
     }
     text.trim_start().to_owned()
+}
+
+/// Mnemonic, class and stack effect.
+fn columns(info: &OpInfo) -> [String; 3] {
+    let class = match info.class {
+        Class::AfterForward(kind) => format!("{}({})", info.class.name(), kind.name()),
+        Class::Always | Class::Never(_) => info.class.name().to_owned(),
+    };
+    [info.mnemonic.to_owned(), class, reference::stack_picture(info)]
 }

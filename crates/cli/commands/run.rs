@@ -19,16 +19,16 @@ pub(crate) struct Arguments {
     /// The program: source, assembly text or module.
     pub(crate) file: PathBuf,
     /// What all chance in the workcell follows from.
-    #[arg(long, default_value_t = 0)]
+    #[arg(long, default_value_t = 0, value_name = "N")]
     pub(crate) seed: u64,
     /// The workcell file, in place of the one that the program names.
-    #[arg(long)]
+    #[arg(long, value_name = "FILE")]
     pub(crate) cell: Option<PathBuf>,
     /// Record the run to a tape file.
-    #[arg(long)]
+    #[arg(long, value_name = "FILE")]
     pub(crate) tape: Option<PathBuf>,
     /// Stop after about so many instructions.
-    #[arg(long, default_value_t = 1_000_000_000)]
+    #[arg(long, default_value_t = 1_000_000_000, value_name = "N")]
     pub(crate) limit: u64,
     /// Tell the run to machines: JSON Lines, a summary last.
     #[arg(long)]
@@ -81,10 +81,14 @@ pub(crate) fn go(
     let module = machine.program().module();
     let limits = Limits::instructions(arguments.limit);
     if arguments.json {
-        drive(machine, direction, limits, cell, &mut Report::new(module))
-    } else {
-        drive(machine, direction, limits, cell, &mut Story::new(module))
+        return drive(machine, direction, limits, cell, &mut Report::new(module));
     }
+    let mut story = Story::new(module);
+    let ending = drive(machine, direction, limits, cell, &mut story);
+    if matches!(ending, Ending::Fault { .. }) {
+        story.tell_headings();
+    }
+    ending
 }
 
 /// Write the tape file of a run.

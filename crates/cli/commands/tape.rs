@@ -6,11 +6,13 @@
 
 use super::Result;
 use crate::problem::{Message, Problem};
+use crate::report;
 use crate::story::said;
 use crate::{Outcome, load, write};
 use obverse_bytecode::{Module, Verified, verify};
 use obverse_geometry::JointConfiguration;
 use obverse_isa::Instr;
+use obverse_recovery::Ending;
 use obverse_tape::{Place, TapeFile};
 use obverse_vm::{Direction, Machine, Stop};
 use obverse_workcell::Shadow;
@@ -23,7 +25,7 @@ pub(crate) struct Arguments {
     /// The tape file.
     file: PathBuf,
     /// Show at most so many records.
-    #[arg(long, default_value_t = 40)]
+    #[arg(long, default_value_t = 40, value_name = "N")]
     records: usize,
     /// For machines: JSON Lines, a summary last.
     #[arg(long)]
@@ -84,7 +86,8 @@ fn walk(program: &Verified, file: &TapeFile) -> std::result::Result<(Vec<Entry>,
         let top = newest(&machine);
         match machine.unwind(&mut cell) {
             Ok(()) => {}
-            Err(stop @ (Stop::AtStart | Stop::Refused(_))) => return Ok((entries, stop)),
+            Err(stop @ Stop::Refused(_)) => return Ok((entries, stop)),
+            Err(stop @ Stop::AtStart) if is_unused(&machine) => return Ok((entries, stop)),
             Err(Stop::Trap(trap)) => {
                 let what = format!("its records do not fit the program: {}", trap.kind);
                 return Err(what);
@@ -100,6 +103,12 @@ fn walk(program: &Verified, file: &TapeFile) -> std::result::Result<(Vec<Entry>,
             entries.push(Entry { pc, size, what: describe(size, &top) });
         }
     }
+}
+
+/// Whether nothing is left of the run: no record, and no more steps than lie before the start.
+fn is_unused(machine: &Machine<'_>) -> bool {
+    machine.tape().is_none_or(obverse_tape::Tape::is_empty)
+        && machine.state().steps() == u64::from(machine.state().pc())
 }
 
 fn place(machine: &Machine<'_>) -> Place {
@@ -173,7 +182,10 @@ fn as_text(
         file.streams.dropped_bits
     ));
     write::line(&match stop {
-        Stop::Refused(refusal) => format!("they lead back to {}", said(module, refusal.pc)),
+        Stop::Refused(refusal) => {
+            let words = report::ending_words(module, &Ending::Refused(*refusal));
+            format!("they lead back to {}", words.trim_start_matches("cannot go back past "))
+        }
         _ => "they lead back to the start".to_owned(),
     });
 }

@@ -49,11 +49,13 @@ impl<T: Copy + Default> Stream<T> {
     /// Push an element.
     #[inline(always)]
     pub fn push(&mut self, element: T) {
-        if self.top == CHUNK {
-            self.next_chunk();
+        // One check serves as bound and as the end of the chunk.
+        if let Some(place) = self.chunk.get_mut(self.top) {
+            *place = element;
+            self.top += 1;
+        } else {
+            self.push_in_next_chunk(element);
         }
-        self.chunk[self.top] = element;
-        self.top += 1;
     }
 
     /// Pop the newest element.
@@ -112,10 +114,11 @@ impl<T: Copy + Default> Stream<T> {
 
     #[cold]
     #[inline(never)]
-    fn next_chunk(&mut self) {
+    fn push_in_next_chunk(&mut self, element: T) {
         let next = self.spare.pop().unwrap_or_else(fresh);
         self.full.push(std::mem::replace(&mut self.chunk, next));
-        self.top = 0;
+        self.chunk[0] = element;
+        self.top = 1;
     }
 
     #[cold]

@@ -9,7 +9,7 @@ use crate::class::{AfterForward, Always, Failure, Pure};
 use crate::ops::flow::{Course, Way};
 use crate::stop::TrapKind;
 use crate::values::{Values, Variables};
-use obverse_isa::{Instr, Label, for_each_op, op};
+use obverse_isa::{CounterId, Instr, Label, for_each_op, op};
 use obverse_tape::{Record, Recorder, Tape, record};
 
 /// Why a loop returned.
@@ -172,9 +172,10 @@ impl<R: Recorder> Forward<'_, '_, R> {
         }
         self.values.depth = 0;
         self.place.jump_forward(to);
-        let is_back_edge = to <= from;
-        let is_bounded = self.place.steps() >= self.limit || self.recorder.is_full();
-        (is_back_edge && is_bounded).then_some(Exit::Bound)
+        if to <= from && (self.place.steps() >= self.limit || self.recorder.is_full()) {
+            return Some(Exit::Bound);
+        }
+        None
     }
 }
 
@@ -271,43 +272,20 @@ pub(crate) fn evaluate(
     Ok(())
 }
 
-/// What running in reverse needs to know of each instruction, found once: every load in the chain
-/// from a statement to the one before it counts.
-#[derive(Debug)]
-pub(crate) struct Ways {
-    /// For a join, where the statement of its jump begins.
-    back: Vec<u32>,
-    /// How many instructions of its prefix an effect needs run again before it can be reversed.
-    rerun: Vec<u8>,
-}
-
-impl Ways {
-    /// The ways of a module's code.
-    pub(crate) fn of(code: &[Instr]) -> Self {
-        let start_of_jump = |instr: &Instr| {
-            let from = instr.join_from()?;
-            let jump = code.get(from.index())?;
-            Some(from.0 - u32::from(jump.prefix()))
-        };
-        let rerun = |instr: &Instr| match instr {
-            Instr::AddLocal { .. }
-            | Instr::SubLocal { .. }
-            | Instr::AddGlobal { .. }
-            | Instr::SubGlobal { .. }
-            | Instr::JoinAssert { .. } => instr.prefix(),
-            _ => 0,
-        };
-        Self {
-            back: code.iter().map(|instr| start_of_jump(instr).unwrap_or(0)).collect(),
-            rerun: code.iter().map(rerun).collect(),
-        }
-    }
+/// For each join, where the statement of its jump begins: one load in the chain from a statement to
+/// the one before it, where the label of the join and the prefix of the jump would be two.
+pub(crate) fn ways_back(code: &[Instr]) -> Vec<u32> {
+    let start_of_jump = |instr: &Instr| {
+        let from = instr.join_from()?;
+        let jump = code.get(from.index())?;
+        Some(from.0 - u32::from(jump.prefix()))
+    };
+    code.iter().map(|instr| start_of_jump(instr).unwrap_or(0)).collect()
 }
 
 struct Reverse<'r, 'a> {
     code: &'r [Instr],
-    way_back: &'r [u32],
-    rerun: &'r [u8],
+    ways_back: &'r [u32],
     values: Values<'a>,
     place: Place,
     tape: &'r mut Tape,
@@ -316,26 +294,38 @@ struct Reverse<'r, 'a> {
 impl Reverse<'_, '_> {
     /// Undo the jump at `from` that led to the join at `landed`, and stand before its statement.
     #[inline(always)]
-    fn undo_jump(&mut self, join: Instr, landed: usize, from: Label) -> Option<Exit> {
+    fn undo_jump(&mut self, join: Instr, landed: usize, from: Label) -> Result<(), Exit> {
         let from = from.index();
+        match join {
+            Instr::ForTop { counter, .. } => self.uncount(from, counter)?,
+            Instr::ForExit { .. } => self.uncount_none(from)?,
+            // Nothing is lost by any other jump.
+            _ => {}
+        }
+        self.place.jump_reverse(landed, from);
+        self.place.pc = self.ways_back[landed] as usize;
+        Ok(())
+    }
+
+    /// Undo a `for.next` that went round.
+    #[inline(always)]
+    fn uncount(&mut self, from: usize, counter: CounterId) -> Result<(), Exit> {
         let mut variables = Variables(&mut self.values);
         let mut course = Course { variables: &mut variables, way: Way::Beside };
-        let undone = match (join, self.code[from]) {
-            (Instr::ForTop { counter, .. }, _) => {
-                op::ForNext { counter, target: Label(0) }.reverse(&mut course)
-            }
-            (Instr::ForExit { .. }, Instr::ForEnter { prefix, counter, exit }) => {
-                let Some(saved) = record::Counter::pop(self.tape) else {
-                    return Some(Exit::Trap(from, TrapKind::TapeEmpty));
-                };
-                op::ForEnter { prefix, counter, exit }.reverse(&mut course, &saved)
-            }
-            // Nothing is lost by any other jump.
-            _ => Ok(()),
-        };
-        self.place.jump_reverse(landed, from);
-        self.place.pc = self.way_back[landed] as usize;
-        undone.err().map(|failure| trap(from, failure))
+        let next = op::ForNext { counter, target: Label(0) };
+        next.reverse(&mut course).map_err(|failure| trap(from, failure))
+    }
+
+    /// Undo a `for.enter` that had nothing to count.
+    #[inline(never)]
+    #[cold]
+    fn uncount_none(&mut self, from: usize) -> Result<(), Exit> {
+        let Instr::ForEnter { prefix, counter, exit } = self.code[from] else { return Ok(()) };
+        let saved = record::Counter::pop(self.tape).ok_or(Exit::Trap(from, TrapKind::TapeEmpty))?;
+        let mut variables = Variables(&mut self.values);
+        let mut course = Course { variables: &mut variables, way: Way::Beside };
+        let enter = op::ForEnter { prefix, counter, exit };
+        enter.reverse(&mut course, &saved).map_err(|failure| trap(from, failure))
     }
 }
 
@@ -353,58 +343,93 @@ macro_rules! rerun_arm {
     }};
 }
 
-/// Reverse: one opcode, by family and class. `$at` is the instruction, `$prefix` its prefix.
+/// Reverse: one opcode, by family and class. `$at` is the instruction, `$prefix` its prefix. What
+/// needs its operands leaves by `$operands`, to come back with them.
 macro_rules! reverse_arm {
-    ($op:expr, $run:ident, $instr:ident, $at:ident, $prefix:expr, variable always) => {{
-        if let Err(failure) = $op.reverse(&mut Variables(&mut $run.values)) {
-            break trap($at, failure);
+    ($op:expr, $run:ident, $instr:ident, $at:ident, $prefix:expr, $operands:lifetime $out:lifetime
+        variable always) => {{
+        if $prefix > 0 {
+            break $operands $at;
         }
-        $run.place.pc = $at - $prefix;
+        if let Err(failure) = $op.reverse(&mut Variables(&mut $run.values)) {
+            break $out trap($at, failure);
+        }
+        $run.place.pc = $at;
     }};
-    ($op:expr, $run:ident, $instr:ident, $at:ident, $prefix:expr, variable after_forward $record:ident) => {{
+    ($op:expr, $run:ident, $instr:ident, $at:ident, $prefix:expr, $operands:lifetime $out:lifetime
+        variable after_forward $record:ident) => {{
         let Some(saved) = record::$record::pop($run.tape) else {
-            break Exit::Trap($at, TrapKind::TapeEmpty);
+            break $out Exit::Trap($at, TrapKind::TapeEmpty);
         };
         if let Err(failure) = $op.reverse(&mut Variables(&mut $run.values), &saved) {
-            break trap($at, failure);
+            break $out trap($at, failure);
         }
         $run.place.pc = $at - $prefix;
     }};
-    ($op:expr, $run:ident, $instr:ident, $at:ident, $prefix:expr, flow always) => {{
+    ($op:expr, $run:ident, $instr:ident, $at:ident, $prefix:expr, $operands:lifetime $out:lifetime
+        flow always) => {{
+        if matches!($instr, Instr::JoinAssert { .. }) {
+            break $operands $at;
+        }
         let mut variables = Variables(&mut $run.values);
         let mut course = Course { variables: &mut variables, way: Way::Beside };
         if let Err(failure) = $op.reverse(&mut course) {
-            break trap($at, failure);
+            break $out trap($at, failure);
         }
         let way = course.way;
-        retrace!($run, $instr, $at, way);
+        retrace!($run, $instr, $at, $prefix, way, $out);
     }};
-    ($op:expr, $run:ident, $instr:ident, $at:ident, $prefix:expr, flow after_forward $record:ident) => {{
+    ($op:expr, $run:ident, $instr:ident, $at:ident, $prefix:expr, $operands:lifetime $out:lifetime
+        flow after_forward $record:ident) => {{
         let Some(saved) = record::$record::pop($run.tape) else {
-            break Exit::Trap($at, TrapKind::TapeEmpty);
+            break $out Exit::Trap($at, TrapKind::TapeEmpty);
         };
         let mut variables = Variables(&mut $run.values);
         let mut course = Course { variables: &mut variables, way: Way::Beside };
         if let Err(failure) = $op.reverse(&mut course, &saved) {
-            break trap($at, failure);
+            break $out trap($at, failure);
         }
         let way = course.way;
-        retrace!($run, $instr, $at, way);
+        retrace!($run, $instr, $at, $prefix, way, $out);
     }};
-    ($op:expr, $run:ident, $instr:ident, $at:ident, $prefix:expr, $($other:tt)*) => {{
+    ($op:expr, $run:ident, $instr:ident, $at:ident, $prefix:expr, $operands:lifetime $out:lifetime
+        $($other:tt)*) => {{
         let _ = $op;
-        break Exit::Slow;
+        break $out Exit::Slow;
+    }};
+}
+
+/// Reverse, with the operands there: the updates, and asserted joins.
+macro_rules! with_operands_arm {
+    ($op:expr, $run:ident, $instr:ident, $at:ident, $prefix:expr, $out:lifetime variable always) => {{
+        if let Err(failure) = $op.reverse(&mut Variables(&mut $run.values)) {
+            break $out trap($at, failure);
+        }
+        $run.place.pc = $at - $prefix;
+    }};
+    ($op:expr, $run:ident, $instr:ident, $at:ident, $prefix:expr, $out:lifetime flow always) => {{
+        let mut variables = Variables(&mut $run.values);
+        let mut course = Course { variables: &mut variables, way: Way::Beside };
+        if let Err(failure) = $op.reverse(&mut course) {
+            break $out trap($at, failure);
+        }
+        let way = course.way;
+        retrace!($run, $instr, $at, $prefix, way, $out);
+    }};
+    ($op:expr, $run:ident, $instr:ident, $at:ident, $prefix:expr, $out:lifetime $($other:tt)*) => {{
+        let _ = $op;
+        break $out Exit::Slow;
     }};
 }
 
 /// Go back where a flow opcode said. A jump is undone in the same step as its landing.
 macro_rules! retrace {
-    ($run:ident, $instr:ident, $at:ident, $way:ident) => {
+    ($run:ident, $instr:ident, $at:ident, $prefix:expr, $way:ident, $out:lifetime) => {
         match $way {
-            Way::Beside => $run.place.pc = $at - usize::from($instr.prefix()),
+            Way::Beside => $run.place.pc = $at - $prefix,
             Way::Named(from) => {
-                if let Some(exit) = $run.undo_jump($instr, $at, from) {
-                    break exit;
+                if let Err(exit) = $run.undo_jump($instr, $at, from) {
+                    break $out exit;
                 }
             }
         }
@@ -416,54 +441,65 @@ macro_rules! retrace {
 #[inline(never)]
 pub(crate) fn reverse<const ONE: bool>(
     code: &[Instr],
-    ways: &Ways,
+    ways_back: &[u32],
     values: &mut Values<'_>,
     place: &mut Place,
     floor: u64,
     tape: &mut Tape,
 ) -> Exit {
-    let mut run = Reverse {
-        code,
-        way_back: &ways.back,
-        rerun: &ways.rerun,
-        values: borrow!(values),
-        place: *place,
-        tape,
-    };
-    run.values.depth = 0;
+    let mut run = Reverse { code, ways_back, values: borrow!(values), place: *place, tape };
     macro_rules! dispatch {
         ($(
             $(#[doc = $doc:literal])+
             $code:literal $ident:ident $mnemonic:literal ($($field:ident: $ty:ty),*)
             [$($picture:tt)*] $class:ident $(($payload:tt))? $family:ident;
         )*) => {
-            loop {
-                let Some(at) = run.place.pc.checked_sub(1) else { break Exit::Slow };
-                let rerun = usize::from(run.rerun[at]);
-                if rerun > 0 {
-                    run.values.depth = 0;
-                    let mut failed = None;
-                    for at in at - rerun..at {
-                        match run.code[at] {
-                            $(Instr::$ident { $($field,)* } => rerun_arm!(
-                                op::$ident { $($field,)* }, run, at, failed, $family
-                            ),)*
-                        }
+            'out: loop {
+                let effect = 'operands: loop {
+                    // Before the first instruction the index wraps, and is none of the code's.
+                    let at = run.place.pc.wrapping_sub(1);
+                    let Some(&instr) = run.code.get(at) else { break 'out Exit::Slow };
+                    match instr {
+                        $(Instr::$ident { $($field,)* } => {
+                            reverse_arm!(
+                                op::$ident { $($field,)* },
+                                run,
+                                instr,
+                                at,
+                                usize::from(0 $(+ obverse_isa::Operand::as_prefix($field))*),
+                                'operands 'out $family $class $($payload)?
+                            );
+                        })*
                     }
-                    if let Some(exit) = failed {
-                        break exit;
+                    if ONE {
+                        break 'out Exit::One;
+                    }
+                    if run.place.steps() <= floor {
+                        break 'out Exit::Bound;
+                    }
+                };
+                let instr = run.code[effect];
+                run.values.depth = 0;
+                let mut failed = None;
+                for at in effect - usize::from(instr.prefix())..effect {
+                    match run.code[at] {
+                        $(Instr::$ident { $($field,)* } => rerun_arm!(
+                            op::$ident { $($field,)* }, run, at, failed, $family
+                        ),)*
                     }
                 }
-                let instr = run.code[at];
+                if let Some(exit) = failed {
+                    break exit;
+                }
                 match instr {
                     $(Instr::$ident { $($field,)* } => {
-                        reverse_arm!(
+                        with_operands_arm!(
                             op::$ident { $($field,)* },
                             run,
                             instr,
-                            at,
+                            effect,
                             usize::from(0 $(+ obverse_isa::Operand::as_prefix($field))*),
-                            $family $class $($payload)?
+                            'out $family $class $($payload)?
                         );
                     })*
                 }

@@ -17,7 +17,7 @@ use xxhash_rust::xxh3::Xxh3;
 pub struct Machine<'p> {
     pub(crate) program: &'p Verified,
     pub(crate) constants: Vec<u64>,
-    ways: hot::Ways,
+    ways_back: Vec<u32>,
     pub(crate) links: Links,
     pub(crate) state: State,
     pub(crate) tape: Option<Tape>,
@@ -100,7 +100,7 @@ impl<'p> Machine<'p> {
         Ok(Self {
             program,
             constants: module.constants.iter().map(|constant| constant.bits()).collect(),
-            ways: hot::Ways::of(&module.code),
+            ways_back: hot::ways_back(&module.code),
             links,
             state,
             tape: Some(Tape::default()),
@@ -324,7 +324,7 @@ impl<'p> Machine<'p> {
         let Some(tape) = &mut self.tape else {
             return Exit::Trap(place.pc, crate::stop::TrapKind::NoTape);
         };
-        let exit = hot::reverse::<ONE>(code, &self.ways, &mut values, &mut place, floor, tape);
+        let exit = hot::reverse::<ONE>(code, &self.ways_back, &mut values, &mut place, floor, tape);
         self.state.place = place;
         exit
     }

@@ -6,7 +6,7 @@ use super::error::AsmError;
 use super::resolve::resolve;
 use crate::module::Module;
 
-/// The module that a text says, not yet verified. Of what [`disassemble`](super::disassemble) wrote,
+/// The module that a text says, not yet verified. Of what [`disassemble`](super::disassemble()) wrote,
 /// the same module.
 ///
 /// # Errors

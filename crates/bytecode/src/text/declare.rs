@@ -53,8 +53,10 @@ enum Opened {
     Nothing,
     Item,
     Error,
-    /// With so many lines of text.
-    Source(usize),
+    Source {
+        /// Whether it has a line of text.
+        has_text: bool,
+    },
 }
 
 #[derive(Default)]
@@ -256,7 +258,7 @@ impl<'t> Reader<'t> {
             ".source" => {
                 let name = line.name("name of the source file")?;
                 self.declared.module.sources.push(SourceFile { name, text: String::new() });
-                self.opened = Opened::Source(0);
+                self.opened = Opened::Source { has_text: false };
                 Ok(line.end()?)
             }
             _ => Err(unknown("directive", word, DIRECTIVES.iter().copied()).into()),
@@ -405,7 +407,7 @@ impl<'t> Reader<'t> {
 
     /// A line of a source file: as it is behind a space, or quoted.
     fn source_line(&mut self, line: &mut Scanner<'t>, text: &str) -> Result<(), AsmError> {
-        let Opened::Source(lines) = self.opened else {
+        let Opened::Source { has_text } = self.opened else {
             return Err(line.error_here("source text follows its `.source`"));
         };
         let written = if text.starts_with('"') {
@@ -418,10 +420,10 @@ impl<'t> Reader<'t> {
             Cow::Borrowed(text.strip_prefix(' ').unwrap_or(text))
         };
         if let Some(file) = self.declared.module.sources.last_mut() {
-            file.text.push_str(if lines > 0 { "\n" } else { "" });
+            file.text.push_str(if has_text { "\n" } else { "" });
             file.text.push_str(&written);
         }
-        self.opened = Opened::Source(lines + 1);
+        self.opened = Opened::Source { has_text: true };
         Ok(())
     }
 }

@@ -10,7 +10,7 @@ use crate::module::{
 use obverse_isa::OperandKind;
 use std::fmt::Write;
 
-/// A module as assembly text, which [`assemble`](super::assemble) reads back as the same module.
+/// A module as assembly text, which [`assemble`](super::assemble()) reads back as the same module.
 #[must_use]
 pub fn disassemble(module: &Module) -> String {
     let names = Names::new(module);
@@ -192,9 +192,6 @@ fn head(function: &Function, out: &mut String) {
 
 fn source_file(file: &SourceFile, out: &mut String) {
     let _ = writeln!(out, "\n.source {}", quoted(&file.name));
-    if file.text.is_empty() {
-        return;
-    }
     for line in file.text.split('\n') {
         let is_verbatim = line.chars().all(|c| is_plain(c) || c == '\t');
         let _ = match line {

@@ -1,6 +1,6 @@
 //! Assembly text: a module for people to read, and to write by hand.
 //!
-//! [`disassemble`] writes everything that a module holds, and [`assemble`] reads it back: the same
+//! [`disassemble()`] writes everything that a module holds, and [`assemble()`] reads it back: the same
 //! module, byte for byte, verified or not. Neither knows what instructions do; both derive what they
 //! write and accept from the instruction table. Whatever the text or the module, neither panics, and
 //! the memory they take is linear in what they are given.

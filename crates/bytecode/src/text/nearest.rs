@@ -51,9 +51,22 @@ mod tests {
     }
 
     #[test]
+    fn long_names_are_not_compared() {
+        let (longest, longer) = ("x".repeat(64), "x".repeat(65));
+        let (a, b) = (longest.as_str(), longer.as_str());
+        assert_eq!(nearest(&longest[1..], [a]), Some(a));
+        assert_eq!(nearest(a, [&longest[1..]]), Some(&longest[1..]));
+        assert_eq!((nearest(a, [b]), nearest(b, [a])), (None, None));
+    }
+
+    #[test]
     fn distances_are_those_of_edits() {
         assert_eq!(distance(b"kitten", b"sitting"), 3);
         assert_eq!(distance(b"", b"abc"), 3);
+        assert_eq!(distance(b"abc", b""), 3);
         assert_eq!(distance(b"abc", b"abc"), 0);
+        assert_eq!(distance(b"abc", b"xabc"), 1);
+        assert_eq!(distance(b"abc", b"abcxy"), 2);
+        assert_eq!(distance(b"xabc", b"abc"), 1);
     }
 }

@@ -147,7 +147,8 @@ mod tests {
 
     #[test]
     fn bare_names_are_words() {
-        for name in ["a", "$hidden", "insert_peg", "L12", "a.b"] {
+        let longest = "a".repeat(80);
+        for name in ["a", "$hidden", "insert_peg", "L12", "a.b", &longest] {
             assert!(is_bare(name), "{name}");
         }
         let long = "a".repeat(81);

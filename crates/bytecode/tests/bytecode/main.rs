@@ -2,6 +2,7 @@
 
 mod builder;
 mod codec;
+mod module;
 mod support;
 mod text;
 mod text_errors;

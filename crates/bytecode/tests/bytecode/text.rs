@@ -267,6 +267,11 @@ L7:
     move.slot initial, linear                 ; after-forward(joints)
     halt                                      ; always
 
+.function "grip" io
+    .parameter "seconds" real
+    enter                                     ; always
+    return                                    ; after-forward(frame)
+
 .source "pick.obv"
 | move to start
 | if x#1
@@ -281,13 +286,15 @@ fn a_disassembly_shows_names_classes_and_source() {
 fn one_function_and_one_instruction_can_be_shown() {
     let module = assembled(PICK);
     let function = disassemble_function(&module, 0).unwrap();
-    assert!(PICK.contains(&function) && function.starts_with(".function \"main\" start\n"));
-    assert!(function.ends_with("; always\n"), "{function}");
-    assert_eq!(disassemble_function(&module, 1), None);
+    assert!(PICK.contains(&format!("\n\n{function}\n")), "{function}");
+    let grip = disassemble_function(&module, 1).unwrap();
+    assert!(PICK.contains(&format!("\n\n{grip}\n")), "{grip}");
+    assert_eq!(disassemble_function(&module, 2), None);
     assert_eq!(instruction(&module, 1).as_deref(), Some("push.joints start"));
     assert_eq!(instruction(&module, 6).as_deref(), Some("jump.unless L7"));
     assert_eq!(instruction(&module, 8).as_deref(), Some("barrier \"the glue is wet\""));
-    assert_eq!(instruction(&module, 13), None);
+    assert_eq!(instruction(&module, 13).as_deref(), Some("enter"));
+    assert_eq!(instruction(&module, 15), None);
 }
 
 #[test]

@@ -90,20 +90,20 @@ pure! {
     PushSetting { setting }, values => values.push(values.setting(setting));
     PushRaised { error }, values => values.push_bool(values.is_raised(error));
     IntAddLocals { left, right }, values => {
-        values.push(values.local(left).wrapping_add(values.local(right)))
+        values.push(values.local(left).wrapping_add(values.local(right)));
     };
     IntAddLocal { local }, values => {
         let term = values.local(local);
         values.unary(|top| top.wrapping_add(term));
     };
     IntAddImmediate { value }, values => {
-        values.unary(|top| of_int(int(top).wrapping_add(i64::from(value))))
+        values.unary(|top| of_int(int(top).wrapping_add(i64::from(value))));
     };
     IntMulImmediate { value }, values => {
-        values.unary(|top| of_int(int(top).wrapping_mul(i64::from(value))))
+        values.unary(|top| of_int(int(top).wrapping_mul(i64::from(value))));
     };
     IntMulLocalImmediate { local, value }, values => {
-        values.push_int(values.local(local).cast_signed().wrapping_mul(i64::from(value)))
+        values.push_int(values.local(local).cast_signed().wrapping_mul(i64::from(value)));
     };
 }
 

@@ -1,0 +1,304 @@
+//! What each command does when nothing is wrong, and the exit codes.
+
+use crate::support::Bench;
+use serde_json::{Value, json};
+
+/// Whether a line of a story has these words, in this order.
+fn has_line(story: &str, words: &[&str]) -> bool {
+    story.lines().any(|line| {
+        let mut rest = line;
+        words.iter().all(|word| match rest.find(word) {
+            Some(at) => {
+                rest = &rest[at + word.len()..];
+                true
+            }
+            None => false,
+        })
+    })
+}
+
+#[test]
+fn the_help_lists_the_commands_and_the_exit_codes() {
+    let help = Bench::new("help").ends(0, &["--help"]).stdout;
+    for command in ["check", "build", "run", "back", "dis", "tape", "isa", "explain"] {
+        assert!(help.contains(&format!("\n  {command} ")), "{command} in\n{help}");
+    }
+    let codes: Vec<&str> = help.lines().skip_while(|line| *line != "Exit codes:").collect();
+    let has = |code: &str| codes.iter().any(|line| line.starts_with(code));
+    assert!(has("  0  ") && has("  1  ") && has("  2  "), "{help}");
+}
+
+#[test]
+fn check_says_what_there_is() {
+    let bench = Bench::new("check");
+    let ran = bench.ends(0, &["check", "tower.obv"]);
+    assert!(ran.stdout.starts_with("tower.obv: correct, no warnings; "), "{}", ran.stdout);
+    assert!(ran.stdout.contains("workcell: bench_cell.toml"), "{}", ran.stdout);
+    assert_eq!(ran.stderr, "");
+}
+
+#[test]
+fn check_shows_warnings_and_counts_them() {
+    let bench = Bench::new("check_warnings");
+    bench.write("w.obv", "var unused = 1\nsequence main { return\n  wait 1 s\n}\n");
+    let ran = bench.ends(0, &["check", "w.obv"]);
+    assert!(ran.stdout.starts_with("w.obv: correct, 2 warnings; "), "{}", ran.stdout);
+    assert!(ran.stderr.contains("[W0001]") && ran.stderr.contains("[W0002]"), "{}", ran.stderr);
+    let lines = bench.ends(0, &["check", "--json", "w.obv"]).json();
+    let found: Vec<(&Value, &Value)> =
+        lines.iter().map(|line| (&line["code"], &line["line"])).collect();
+    let expected = [(json!("W0001"), json!(1)), (json!("W0002"), json!(3))];
+    assert_eq!(found[..2], expected.each_ref().map(|(code, line)| (code, line)));
+    assert_eq!(lines[2]["outcome"], "correct");
+    assert_eq!((&lines[2]["errors"], &lines[2]["warnings"]), (&json!(0), &json!(2)));
+}
+
+#[test]
+fn check_tells_machines_every_diagnostic_with_its_places() {
+    let bench = Bench::new("check_json");
+    bench.write(
+        "e.obv",
+        "joints a = [0, 0, 0, 0, 0, 0] deg\nvar a = 1\nsequence main {\n  wait 3 mm\n}\n",
+    );
+    let ran = bench.ends(2, &["check", "--json", "e.obv"]);
+    assert_eq!(ran.stderr, "");
+    let lines = ran.json();
+    let twice = &lines[0];
+    assert_eq!(twice["type"], "diagnostic");
+    assert_eq!((&twice["code"], &twice["severity"]), (&json!("E0102"), &json!("error")));
+    assert_eq!(
+        (&twice["file"], &twice["line"], &twice["column"]),
+        (&json!("e.obv"), &json!(2), &json!(5))
+    );
+    assert_eq!(
+        (&twice["labels"][0]["line"], &twice["labels"][0]["column"]),
+        (&json!(1), &json!(8))
+    );
+    assert!(twice["message"].as_str().is_some_and(|message| message.contains("`a`")));
+    assert_eq!((&lines[1]["code"], &lines[1]["line"]), (&json!("E0202"), &json!(4)));
+    let summary = ran.summary();
+    assert_eq!((&summary["outcome"], &summary["errors"]), (&json!("wrong"), &json!(2)));
+    let missing = bench.ends(2, &["check", "--json", "none.obv"]).json();
+    assert_eq!((&missing[0]["file"], &missing[0]["code"]), (&json!("none.obv"), &Value::Null));
+}
+
+#[test]
+fn run_tells_the_story() {
+    let bench = Bench::new("run");
+    let story = bench.ends(0, &["run", "bad_pin.obv", "--seed", "1"]).stdout;
+    assert!(story.starts_with("bad_pin.obv in pin_cell.toml, seed 1\n"), "{story}");
+    for line in [
+        ["0.00 s", "sequence main", ""],
+        ["action pick(pin_1)", "", ""],
+        ["set 0 high; sleep 0.4 s", "output 0 high", ""],
+        ["distance 60 mm forward in tcp", " N, ", "stopped by force"],
+        ["return to initial position", " mm in ", " s"],
+        ["throw pin_jams", "error pin_jams", "recoverable"],
+        ["sequence take_the_next_pin", "", ""],
+        ["error pin_jams", "dealt with", "the action again"],
+    ] {
+        assert!(has_line(&story, &line), "{line:?} in\n{story}");
+    }
+    let end: Vec<&str> = story.lines().rev().take(2).collect();
+    assert_eq!(end[1], "finished");
+    assert!(end[0].contains(" instructions, ") && end[0].contains(" bits of tape, "), "{}", end[0]);
+}
+
+#[test]
+fn a_perturbed_attempt_is_told_step_by_step() {
+    let bench = Bench::new("perturbed");
+    let story = bench.ends(0, &["run", "peg_in_hole.obv", "--seed", "0"]).stdout;
+    assert!(has_line(&story, &["return to initial position", " mm in "]), "{story}");
+    assert!(has_line(&story, &["perturbation", " mm in "]), "{story}");
+    assert!(!story.contains("repeat with perturbation"), "{story}");
+}
+
+#[test]
+fn back_tells_both_ways_and_compares() {
+    let bench = Bench::new("back");
+    let story = bench.ends(0, &["back", "screws.obv", "--seed", "1"]).stdout;
+    let (there, back) = story.split_once("\nand back\n").expect("both ways");
+    assert!(there.contains("\nfinished\n"));
+    let arrows = back.lines().filter(|line| line.contains(" s < ")).count();
+    assert!(arrows > 20, "{back}");
+    assert!(has_line(back, &["in reverse", "in place of going back"]), "{back}");
+    assert!(back.contains("the state is identical to the start, bit for bit"), "{back}");
+    let glue = bench.ends(0, &["back", "glue.obv"]).stdout;
+    assert!(glue.contains("cannot go back past glue.obv:28: the glue is on the block"), "{glue}");
+}
+
+#[test]
+fn the_summaries_have_their_figures() {
+    let bench = Bench::new("summaries");
+    for command in ["run", "back"] {
+        let ran = bench.ends(0, &[command, "--json", "tower.obv", "--seed", "1"]);
+        let lines = ran.json();
+        let summary = ran.summary();
+        let summaries = lines.iter().filter(|line| line["type"] == "summary").count();
+        assert_eq!(summaries, 1);
+        for figure in ["instructions", "commands", "tape_bits"] {
+            assert!(summary[figure].as_u64() > Some(0), "{figure}: {summary}");
+        }
+        let events = &lines[..lines.len() - 1];
+        assert!(events.iter().all(|line| line["type"] == "event" && line["line"].is_u64()));
+        let moves = events.iter().filter(|line| line["distance_m"].is_f64()).count();
+        assert!(moves >= 11, "{moves} moves are told");
+    }
+    let run = bench.run(&["run", "--json", "tower.obv"]).summary();
+    assert_eq!((&run["outcome"], &run["stopped_at"]), (&json!("finished"), &Value::Null));
+    let back = bench.run(&["back", "--json", "tower.obv"]).summary();
+    assert_eq!((&back["outcome"], &back["there"]), (&json!("at_start"), &json!("finished")));
+    assert_eq!((&back["identical"], &back["stopped_at"]), (&json!(true), &Value::Null));
+    let glue = bench.run(&["back", "--json", "glue.obv"]).summary();
+    assert_eq!((&glue["outcome"], &glue["identical"]), (&json!("refused"), &json!(false)));
+    assert_eq!(glue["stopped_at"]["line"], 28);
+    assert_eq!(glue["stopped_at"]["file"], "glue.obv");
+}
+
+#[test]
+fn all_chance_follows_from_the_seed() {
+    let bench = Bench::new("seed");
+    let run = |seed: &str| bench.run(&["run", "--json", "warm_up.obv", "--seed", seed]).stdout;
+    assert_eq!(run("7"), run("7"));
+    assert_ne!(run("7"), run("8"));
+}
+
+#[test]
+fn exit_code_one_is_for_runs_that_end_otherwise() {
+    let bench = Bench::new("exit_codes");
+    let error = bench.ends(1, &["run", "--json", "reversal_policy.obv", "--seed", "0"]).summary();
+    assert_eq!(error["outcome"], "unhandled_error");
+    assert_eq!(error["errors"], json!(["peg_meets_rim"]));
+    let limit = bench.ends(1, &["run", "--json", "warm_up.obv", "--limit", "20"]).summary();
+    assert_eq!(limit["outcome"], "budget");
+    bench.write(
+        "trap.obv",
+        "sequence main {\n  var none = 0\n  var x = 1 / none\n  wait real(x) * 1 s\n}\n",
+    );
+    let trap = bench.ends(1, &["run", "--json", "trap.obv"]).summary();
+    assert_eq!((&trap["outcome"], &trap["stopped_at"]["line"]), (&json!("trap"), &json!(3)));
+    bench.write("far.obv", "sequence main {\n  move 3 m up in base\n}\n");
+    let fault = bench.ends(1, &["run", "--json", "far.obv"]).summary();
+    assert_eq!((&fault["outcome"], &fault["stopped_at"]["line"]), (&json!("fault"), &json!(2)));
+    // What ended with an error goes back all the same, and that is what `back` is asked for.
+    bench.ends(0, &["back", "reversal_policy.obv", "--seed", "0"]);
+}
+
+#[test]
+fn a_built_module_runs_as_its_source_does() {
+    let bench = Bench::new("build");
+    let built = bench.ends(0, &["build", "sheets.obv"]).stdout;
+    let bytes = bench.read("sheets.obc").len();
+    assert_eq!(built, format!("sheets.obc: {bytes} bytes\n"));
+    bench.ends(0, &["build", "sheets.obv", "-o", "other.obc"]);
+    assert_eq!(
+        bench.read("other.obc"),
+        bench.read("sheets.obc"),
+        "the same source, the same bytes"
+    );
+    let of = |file: &str| bench.ends(0, &["run", "--json", file, "--seed", "3"]).stdout;
+    assert_eq!(of("sheets.obc"), of("sheets.obv"));
+    bench.ends(0, &["check", "sheets.obc"]);
+    // A module is known by its first bytes, not by its name.
+    bench.write("renamed.bin", bench.read("sheets.obc"));
+    assert_eq!(of("renamed.bin"), of("sheets.obv"));
+}
+
+#[test]
+fn a_disassembly_assembled_again_runs_the_same() {
+    let bench = Bench::new("dis");
+    for program in ["bad_pin", "screws", "find_edge"] {
+        let source = format!("{program}.obv");
+        let text = bench.ends(0, &["dis", &source]).stdout;
+        let assembly = format!("{program}.obvasm");
+        bench.write(&assembly, &text);
+        let of = |file: &str| bench.ends(0, &["back", "--json", file, "--seed", "2"]).summary();
+        assert_eq!(of(&assembly), of(&source));
+        assert_eq!(bench.ends(0, &["dis", &assembly]).stdout, text);
+    }
+}
+
+#[test]
+fn a_tape_is_recorded_and_shown() {
+    let bench = Bench::new("tape");
+    let ran = bench.ends(0, &["run", "--json", "tower.obv", "--tape", "t.tape", "--seed", "5"]);
+    let shown = bench.ends(0, &["tape", "t.tape"]).stdout;
+    assert!(shown.starts_with("tower.obv, fingerprint "), "{shown}");
+    assert!(shown.contains("seed 5\nended: finished\n"), "{shown}");
+    assert!(has_line(&shown, &["move.item", "move to part.grasp linearly", "joints ["]), "{shown}");
+    assert!(has_line(&shown, &["output.set", "set 0 low", "bit 1"]), "{shown}");
+    assert!(shown.ends_with("they lead back to the start\n"), "{shown}");
+    let told = bench.ends(0, &["tape", "--json", "t.tape", "--records", "100000"]);
+    let records: u64 = told.json().iter().filter_map(|line| line["bits"].as_u64()).sum();
+    assert_eq!(ran.summary()["tape_bits"], records, "every bit is accounted for");
+    let costs = &told.summary()["costs"];
+    let bits: u64 =
+        costs.as_array().expect("costs").iter().filter_map(|c| c["bits"].as_u64()).sum();
+    assert_eq!(bits, records);
+}
+
+#[test]
+fn the_tape_of_a_run_with_a_barrier_leads_back_to_it() {
+    let bench = Bench::new("tape_barrier");
+    bench.ends(0, &["run", "glue.obv", "--tape", "g.tape"]);
+    let shown = bench.ends(0, &["tape", "g.tape"]).stdout;
+    assert!(
+        shown.ends_with("they lead back to glue.obv:28: the glue is on the block\n"),
+        "{shown}"
+    );
+    // Taken back all the way, nothing is left on it.
+    bench.ends(0, &["back", "tower.obv", "--tape", "b.tape"]);
+    let empty = bench.ends(0, &["tape", "--json", "b.tape"]).summary();
+    assert_eq!((&empty["records"], &empty["ending"]), (&json!(0), &json!("back at the start")));
+}
+
+#[test]
+fn the_instruction_set_is_listed() {
+    let bench = Bench::new("isa");
+    let text = bench.ends(0, &["isa"]).stdout;
+    let table = bench.ends(0, &["isa", "--json"]).json().remove(0);
+    let opcodes = table["opcodes"].as_array().expect("opcodes");
+    assert_eq!(opcodes.len(), obverse_isa::OPS.len());
+    for row in opcodes {
+        let mnemonic = row["mnemonic"].as_str().expect("a mnemonic");
+        assert!(has_line(
+            &text,
+            &[&format!("  {mnemonic} "), row["class"].as_str().expect("a class")]
+        ));
+        let why = row["why"].is_string();
+        assert_eq!(why, row["class"] == "never", "{row}");
+    }
+}
+
+#[test]
+fn explain_knows_every_opcode_and_every_code() {
+    let bench = Bench::new("explain");
+    let explained = bench.ends(0, &["explain", "move.joint"]).stdout;
+    assert!(explained.starts_with("move.joint (0x80, kinematic)\n"), "{explained}");
+    let explained = bench.ends(0, &["explain", "e0202"]).stdout;
+    assert!(explained.starts_with("E0202: a value of another unit\n"), "{explained}");
+    assert_eq!(explained.matches("a value of another unit").count(), 1, "{explained}");
+    for code in obverse_syntax::codes::Code::ALL {
+        let explained = bench.ends(0, &["explain", code.as_str()]).stdout;
+        let prose = explained.split("\nWrong:").next().unwrap_or_default();
+        assert!(prose.lines().all(|line| line.chars().count() <= 80), "{explained}");
+    }
+}
+
+/// A reader that has seen enough ends the writer quietly.
+#[test]
+fn a_pipe_closed_early_is_no_error() {
+    use std::io::Read;
+    use std::process::Stdio;
+    let bench = Bench::new("pipe");
+    // More than any pipe holds.
+    let text = String::from_utf8(bench.read("marking.obv")).expect("text");
+    bench.write("long.obv", text.replace("rounds = 10", "rounds = 300"));
+    let mut command = bench.command(&["run", "--json", "long.obv"]);
+    let mut child = command.stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().expect("a child");
+    let mut first = [0; 1];
+    child.stdout.take().expect("a pipe").read_exact(&mut first).expect("a byte");
+    let output = child.wait_with_output().expect("an end");
+    assert_eq!(output.status.code(), Some(0));
+    assert_eq!(String::from_utf8_lossy(&output.stderr), "");
+}

@@ -1,0 +1,173 @@
+//! Modules and tapes that are damaged or foreign, and outputs that cannot or must not be written.
+
+use crate::support::Bench;
+use std::process::Stdio;
+
+/// A folder with a module `m.obc` and a tape `t.tape` of the same program.
+fn bench(test: &str) -> Bench {
+    let bench = Bench::new(test);
+    bench.ends(0, &["build", "tower.obv", "-o", "m.obc"]);
+    bench.ends(0, &["run", "m.obc", "--tape", "t.tape"]);
+    bench
+}
+
+fn flipped(bytes: &[u8], at: usize) -> Vec<u8> {
+    let mut bytes = bytes.to_vec();
+    bytes[at] ^= 0x10;
+    bytes
+}
+
+#[test]
+fn a_truncated_file_is_refused_wherever_it_ends() {
+    let bench = bench("truncated");
+    for (file, command) in [("m.obc", "run"), ("t.tape", "tape")] {
+        let whole = bench.read(file);
+        let name = format!("cut_{file}");
+        for length in [0, 1, 7, 8, 20, 35, 36, 37, whole.len() / 2, whole.len() - 1] {
+            bench.write(&name, &whole[..length]);
+            bench.refuses(&[command, &name], &[&format!("{name}: byte ")]);
+        }
+        let longer: Vec<u8> = whole.iter().copied().chain([0]).collect();
+        bench.write(&name, longer);
+        bench.refuses(&[command, &name], &[&format!("{name}: byte 20"), "added to"]);
+    }
+}
+
+#[test]
+fn a_flipped_bit_is_found_wherever_it_is() {
+    let bench = bench("flipped");
+    for (file, command) in [("m.obc", "run"), ("t.tape", "tape")] {
+        let whole = bench.read(file);
+        let name = format!("flip_{file}");
+        for at in [0, 8, 12, 20, 28, 36, 100, whole.len() - 1] {
+            bench.write(&name, flipped(&whole, at));
+            bench.refuses(&[command, &name], &[&format!("{name}: byte ")]);
+        }
+    }
+}
+
+#[test]
+fn a_file_of_another_table_or_version_says_so() {
+    let bench = bench("other_table");
+    let (module, tape) = (bench.read("m.obc"), bench.read("t.tape"));
+    bench.write("table.obc", flipped(&module, 12));
+    bench.refuses(
+        &["run", "table.obc"],
+        &["byte 12", "instruction table", "compile the program again"],
+    );
+    bench.write("version.obc", flipped(&module, 8));
+    bench.refuses(
+        &["dis", "version.obc"],
+        &["byte 8", "format version", "compile the program again"],
+    );
+    bench.write("table.tape", flipped(&tape, 12));
+    bench.refuses(&["tape", "table.tape"], &["byte 12", "record the run again"]);
+}
+
+#[test]
+fn a_file_of_another_kind_is_no_tape_and_no_program() {
+    let bench = bench("other_kind");
+    bench.refuses(&["tape", "m.obc"], &["m.obc: byte 0", "no tape"]);
+    bench.refuses(&["tape", "tower.obv"], &["tower.obv: byte 0", "no tape"]);
+    for command in ["check", "build", "run", "back", "dis"] {
+        bench.refuses(&[command, "t.tape"], &["t.tape: this is a tape", "`obverse tape t.tape`"]);
+    }
+}
+
+/// A tape whose header is right, with the module of one program and the state of another.
+#[test]
+fn a_foreign_tape_is_refused() {
+    use obverse_bytecode::{encode, fingerprint};
+    use obverse_tape::TapeFile;
+    let bench = bench("foreign");
+    let (mut file, _) = TapeFile::from_bytes(&bench.read("t.tape")).expect("a tape");
+    let other = obverse_compiler::compile("other.obv", "sequence main { wait 1 s }");
+    let module = encode(&other.module.expect("a module")).expect("bytes");
+    file.module.clone_from(&module);
+    bench.write("f.tape", file.to_bytes().expect("bytes"));
+    bench.refuses(&["tape", "f.tape"], &["f.tape", "its module is not the one that was run"]);
+    file.fingerprint = fingerprint(&module);
+    bench.write("f.tape", file.to_bytes().expect("bytes"));
+    bench.refuses(&["tape", "f.tape"], &["f.tape: its records do not fit the program"]);
+}
+
+/// A tape of the right program from which records are missing.
+#[test]
+fn a_tape_without_its_records_is_refused() {
+    use obverse_tape::TapeFile;
+    let bench = bench("hollow");
+    let (mut file, _) = TapeFile::from_bytes(&bench.read("t.tape")).expect("a tape");
+    file.streams = Default::default();
+    bench.write("h.tape", file.to_bytes().expect("bytes"));
+    bench.refuses(&["tape", "h.tape"], &["h.tape: its records do not fit the program"]);
+}
+
+#[test]
+fn an_output_that_cannot_be_written_is_known_before_the_run() {
+    let bench = bench("unwritable");
+    let nowhere = ["there is no folder nowhere"];
+    bench.refuses(&["build", "tower.obv", "-o", "nowhere/x.obc"], &nowhere);
+    bench.refuses(&["run", "tower.obv", "--tape", "nowhere/x.tape"], &nowhere);
+    bench.refuses(&["back", "tower.obv", "--tape", "nowhere/x.tape"], &nowhere);
+    bench.refuses(&["build", "tower.obv", "-o", "."], &["this is a folder"]);
+    bench.refuses(&["run", "tower.obv", "--tape", ".."], &["this is a folder"]);
+    bench.refuses(&["build", "tower.obv", "-o", ""], &["a value is required"]);
+    if cfg!(target_os = "linux") {
+        bench.refuses(
+            &["build", "tower.obv", "-o", "/proc/x.obc"],
+            &["/proc/x.obc: cannot be written"],
+        );
+    }
+}
+
+#[test]
+fn an_output_never_takes_the_place_of_what_people_write() {
+    let bench = bench("overwrite");
+    bench.refuses(&["build", "tower.obv", "-o", "tower.obv"], &["would overwrite tower.obv"]);
+    bench.refuses(&["build", "tower.obv", "-o", "./tower.obv"], &["would overwrite tower.obv"]);
+    bench.refuses(&["build", "m.obc"], &["would overwrite m.obc"]);
+    bench.refuses(&["build", "tower.obv", "-o", "screws.obv"], &["`.obv`"]);
+    bench.refuses(&["build", "tower.obv", "-o", "new.toml"], &["`.toml`"]);
+    bench.refuses(&["run", "tower.obv", "--tape", "tower.obv"], &["would overwrite tower.obv"]);
+    bench.refuses(&["run", "m.obc", "--tape", "m.obc"], &["would overwrite m.obc"]);
+    bench.refuses(
+        &["run", "tower.obv", "--tape", "bench_cell.toml"],
+        &["overwrite bench_cell.toml"],
+    );
+    bench.refuses(&["back", "tower.obv", "--tape", "sheets.obv"], &["`.obv`"]);
+}
+
+#[cfg(unix)]
+#[test]
+fn an_output_by_another_name_is_known_for_the_same_file() {
+    let bench = bench("linked");
+    std::os::unix::fs::symlink(bench.path("m.obc"), bench.path("link.obc")).expect("a link");
+    bench.refuses(&["build", "m.obc", "-o", "link.obc"], &["would overwrite m.obc"]);
+}
+
+/// What was there before stays if the new program is wrong, and goes as a whole if it is right.
+#[test]
+fn an_older_output_is_replaced_as_a_whole_or_not_at_all() {
+    let bench = bench("replaced");
+    let before = bench.read("m.obc");
+    bench.write("wrong.obv", "sequence main { wait 3 mm }");
+    bench.refuses(&["build", "wrong.obv", "-o", "m.obc"], &["E0202"]);
+    assert_eq!(bench.read("m.obc"), before);
+    bench.ends(0, &["build", "screws.obv", "-o", "m.obc"]);
+    bench.ends(0, &["check", "m.obc"]);
+    assert!(bench.files().keys().all(|name| !name.contains(".part")));
+}
+
+#[test]
+fn a_full_standard_output_is_an_error() {
+    if !cfg!(target_os = "linux") {
+        return;
+    }
+    let bench = bench("full");
+    let full = std::fs::OpenOptions::new().write(true).open("/dev/full").expect("/dev/full");
+    let mut command = bench.command(&["isa"]);
+    let output = command.stdout(Stdio::from(full)).output().expect("the binary runs");
+    assert_eq!(output.status.code(), Some(2));
+    let said = String::from_utf8_lossy(&output.stderr);
+    assert!(said.contains("standard output cannot be written"), "{said}");
+}

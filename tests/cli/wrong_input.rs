@@ -1,0 +1,142 @@
+//! Programs, workcells and command lines that are wrong.
+
+use crate::support::Bench;
+
+#[test]
+fn files_that_are_not_there_or_no_files() {
+    let bench = Bench::new("wrong_files");
+    for command in ["check", "build", "run", "back", "dis", "tape"] {
+        bench.refuses(&[command, "missing.obv"], &["missing.obv", "no such file"]);
+        bench.refuses(&[command, "."], &[".: this is a folder"]);
+        bench.refuses(&[command], &["<FILE>"]);
+    }
+}
+
+#[test]
+fn files_that_are_no_programs() {
+    let bench = Bench::new("no_programs");
+    bench.write("empty.obv", "");
+    bench.write("binary.obv", [0x7f, b'E', b'L', b'F', 0xff, 0x00, 0x1b]);
+    bench.write("zeros.obv", [0; 100]);
+    bench.write("text.obc", "sequence main { wait 1 s }");
+    bench.write("empty.obc", "");
+    bench.write("empty.obvasm", "");
+    bench.write("binary.obvasm", [0xff; 9]);
+    for command in ["check", "build", "run", "back", "dis"] {
+        bench.refuses(&[command, "empty.obv"], &["empty.obv:1:1", "E0301"]);
+        bench.refuses(&[command, "binary.obv"], &["binary.obv:1:1", "E0007", "not text"]);
+        bench.refuses(&[command, "zeros.obv"], &["zeros.obv", "E0007", "NUL"]);
+        bench.refuses(&[command, "text.obc"], &["text.obc: byte 0", "no module"]);
+        bench.refuses(&[command, "empty.obc"], &["empty.obc: byte 0", "no module"]);
+        bench.refuses(&[command, "empty.obvasm"], &["empty.obvasm:1:1", "obvasm 1"]);
+        bench.refuses(&[command, "binary.obvasm"], &["binary.obvasm: not text"]);
+        bench.refuses(&[command, "pin_cell.toml"], &["pin_cell.toml: this is a workcell"]);
+    }
+}
+
+#[test]
+fn mistakes_are_all_reported_with_their_places() {
+    let bench = Bench::new("mistakes");
+    let text = "sequence main {\n  move to nowhere\n  wait 3 mm\n  set 0 hihg\n}\n";
+    bench.write("m.obv", text);
+    bench.refuses(&["run", "m.obv"], &["m.obv:4:", "E0010"]);
+    bench.write("m.obv", text.replace("hihg", "high"));
+    bench.refuses(&["build", "m.obv"], &["m.obv:2:11", "E0101", "m.obv:3:8", "E0202", "2 errors"]);
+}
+
+#[test]
+fn what_is_very_deep_or_very_long_is_refused_briefly() {
+    let bench = Bench::new("deep");
+    let open = "(".repeat(1_000_000);
+    bench.write("deep.obv", format!("sequence main {{ var x = {open}"));
+    bench.write("bare.obv", &open);
+    bench.write("blocks.obv", format!("sequence main {}", "{".repeat(1_000_000)));
+    bench.write("minus.obv", format!("var x = {}1", "-".repeat(1_000_000)));
+    bench.write("word.obv", "a".repeat(1_000_000));
+    bench.write("deep.toml", format!("a = {}", "[".repeat(1_000_000)));
+    bench.write("dots.obvasm", ".".repeat(1_000_000));
+    for file in ["deep.obv", "bare.obv", "blocks.obv", "minus.obv", "word.obv", "dots.obvasm"] {
+        bench.refuses(&["check", file], &[&format!("{file}:1:")]);
+        let said = bench.run(&["check", file]).stderr;
+        assert!(said.len() < 20_000, "{file}: {} bytes are said", said.len());
+    }
+    bench.refuses(&["run", "tower.obv", "--cell", "deep.toml"], &["deep.toml:1:"]);
+}
+
+/// What a hostile file would write to the terminal is not written there.
+#[test]
+fn control_characters_do_not_reach_the_terminal() {
+    let bench = Bench::new("control");
+    bench.write("esc.obv", "sequence main { move to \u{1b}[31mhome } // \u{9b}2J\n");
+    let said = bench.ends(2, &["check", "esc.obv"]).stderr;
+    assert!(!said.contains(['\u{1b}', '\u{9b}']), "{said:?}");
+    bench.write("text.obv", "sequence main { barrier \"\u{1b}]0;gone\" }");
+    let told = bench.run(&["run", "text.obv"]);
+    assert!(!told.stdout.contains('\u{1b}'), "{:?}", told.stdout);
+}
+
+#[test]
+fn devices_without_an_end_are_not_read_to_it() {
+    if !cfg!(target_os = "linux") {
+        return;
+    }
+    let bench = Bench::new("devices");
+    bench.refuses(&["check", "/dev/zero"], &["/dev/zero: larger than 256 MiB"]);
+}
+
+#[test]
+fn workcells_that_are_wrong_are_shown_where() {
+    let bench = Bench::new("workcells");
+    let good = String::from_utf8(bench.read("pin_cell.toml")).expect("text");
+    let wrong = [
+        ("x = ", "w.toml:1:5"),
+        ("[arm]\nhome_rad = 3\n", "w.toml:2:12"),
+        ("[arm]\nhome_rad = [0, 0, 0, 0, 0, 99]\n", "w.toml:2:"),
+        ("[arms]\n", "w.toml:1:"),
+        ("\u{0}", "w.toml:1:"),
+    ];
+    for (text, place) in wrong {
+        bench.write("w.toml", text);
+        bench.refuses(&["run", "bad_pin.obv", "--cell", "w.toml"], &[place]);
+    }
+    let line_of =
+        |needle: &str| good.lines().position(|line| line.contains(needle)).map(|at| at + 1);
+    let place = format!("w.toml:{}:", line_of("near_mm").expect("a line"));
+    bench.write("w.toml", good.replace("near_mm = 5", "near_mm = nan"));
+    bench.refuses(&["check", "bad_pin.obv", "--cell", "w.toml"], &[&place]);
+    bench.write("w.toml", [0xff, 0xfe]);
+    bench.refuses(&["check", "bad_pin.obv", "--cell", "w.toml"], &["w.toml: not text"]);
+    bench.refuses(&["run", "bad_pin.obv", "--cell", "none.toml"], &["none.toml: cannot be read"]);
+    bench.refuses(&["run", "bad_pin.obv", "--cell", "."], &["this is a folder"]);
+}
+
+#[test]
+fn workcells_that_lack_something_are_told_what() {
+    let bench = Bench::new("lacking");
+    let lacks_items = ["`block_a`", "`block_b`", "`block_c`", "tower.obv", "pin_cell.toml"];
+    bench.refuses(&["check", "tower.obv", "--cell", "pin_cell.toml"], &lacks_items);
+    bench.refuses(&["run", "find_edge.obv", "--cell", "pin_cell.toml"], &["no tool `probe`"]);
+    bench.write(
+        "io.obv",
+        "sequence main {\n  set 8 high\n  wait until input 9 high for up to 1 s\n}\n",
+    );
+    let words = ["io.obv:2:3: there is no output 8", "io.obv:3:3: there is no input 9"];
+    bench.refuses(&["run", "io.obv", "--cell", "pin_cell.toml"], &words);
+    bench.refuses(&["run", "io.obv"], &["a bare arm"]);
+    bench.write("lost.obv", "cell \"lost.toml\"\nsequence main { wait 1 s }\n");
+    bench.refuses(&["run", "lost.obv"], &["lost.toml", "lost.obv names it", "--cell"]);
+}
+
+#[test]
+fn command_lines_that_are_wrong() {
+    let bench = Bench::new("command_lines");
+    bench.refuses(&["frobnicate"], &["frobnicate"]);
+    bench.refuses(&["run", "tower.obv", "--seed", "some"], &["--seed", "some"]);
+    bench.refuses(&["run", "tower.obv", "--seed", "99999999999999999999"], &["--seed"]);
+    bench.refuses(&["run", "tower.obv", "--limit", "-1"], &["-1"]);
+    bench.refuses(&["run", "tower.obv", "screws.obv"], &["screws.obv"]);
+    bench.refuses(&["explain", "frobnicate"], &["`frobnicate` is neither an opcode"]);
+    bench.refuses(&["explain", "move.joins"], &["did you mean `move.joint`?"]);
+    bench.refuses(&["explain", ""], &["neither"]);
+    bench.refuses(&[], &["Usage"]);
+}
