@@ -42,13 +42,8 @@ fn kinematics_of_the_arm(criterion: &mut Criterion) {
 fn trial(cell: &Cell, seed: u64) -> f64 {
     let mut sim = Sim::new(cell, seed);
     let tool = obverse_workcell::Items::initial_tool(&sim);
-    let motion = |goal, path, force_limit_n| Motion {
-        goal,
-        path,
-        speed: Speed::Slow,
-        tool,
-        force_limit_n,
-    };
+    let motion =
+        |goal, path, force_limit_n| Motion { goal, path, speed: Speed::Slow, tool, force_limit_n };
     let gripped = sim.set_output(0, true);
     assert!(gripped.is_ok(), "{gripped:?}");
     let approach = sim.execute(&motion(Goal::Joints(START), Path::Joint, None));

@@ -1,7 +1,8 @@
 //! The machine: forward without a tape, forward with one, and in reverse, on the same programs.
 //!
-//! `OBVERSE_FIGURES=1 cargo bench -p obverse-benches --bench dispatch` prints the ratios of one run,
-//! each from the fastest of many interleaved rounds, so that a noisy machine disturbs all alike.
+//! `OBVERSE_FIGURES=1 cargo bench -p obverse-benches --bench dispatch` prints the ratios of one
+//! run, each from the fastest of many interleaved rounds, so that a noisy machine disturbs all
+//! alike.
 
 use criterion::{Criterion, Throughput, criterion_group, criterion_main};
 use obverse_benches::{SOURCES, machine, program, timed};

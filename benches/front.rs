@@ -3,19 +3,34 @@
 use criterion::{Criterion, Throughput, criterion_group, criterion_main};
 use std::fmt::Write;
 
+/// What every sequence does.
+const BODY: &str = "
+  var offset = gap * 2 + 0.5 mm
+  var rounds = times mod 7
+  io gripper_open
+  move to start
+  while rounds > 0 {
+    if input 3 and rounds < 5 {
+      move 20 mm up in base
+      done += 1
+    } else {
+      offset = offset + 1 mm
+      wait 0.1 s
+    }
+    rounds -= 1
+  }
+  for i from 1 to 3 {
+    done += i * 2
+  }
+  speed slow { move to start linearly }";
+
 /// A program of so many sequences, each of some twenty lines.
 fn long_program(sequences: usize) -> String {
     let mut text = String::from("joints start = [0.1, -1.2, 1.3, -1.7, -1.57, 0.3] rad\n");
     text.push_str("io gripper_open { set 0 low; sleep 0.5 s }\nvar done = 0\n\n");
     for index in 0..sequences {
-        let _ = write!(
-            text,
-            "sequence part_{index}(gap: length, times: int) {{\n  var offset = gap * 2 + 0.5 mm\n  \
-             var rounds = times mod 7\n  io gripper_open\n  move to start\n  while rounds > 0 {{\n    \
-             if input 3 and rounds < 5 {{\n      move 20 mm up in base\n      done += 1\n    }} else {{\n      \
-             offset = offset + 1 mm\n      wait 0.1 s\n    }}\n    rounds -= 1\n  }}\n  for i from 1 to 3 {{\n    \
-             done += i * 2\n  }}\n  speed slow {{ move to start linearly }}\n  checkpoint after_{index}\n}}\n\n"
-        );
+        let _ = writeln!(text, "sequence part_{index}(gap: length, times: int) {{{BODY}");
+        let _ = writeln!(text, "  checkpoint after_{index}\n}}\n");
     }
     text.push_str("sequence main {\n");
     for index in 0..sequences {

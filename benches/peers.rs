@@ -1,8 +1,8 @@
 //! The same loops on the machine, on Lua 5.4 and on wasmi, interleaved in one run:
 //! `cargo bench -p obverse-benches --features peers --bench peers`.
 //!
-//! Each figure is the fastest of many rounds, so that a noisy machine disturbs all alike; what counts
-//! are the ratios.
+//! Each figure is the fastest of many rounds, so that a noisy machine disturbs all alike; what
+//! counts are the ratios.
 
 use mlua::Lua;
 use obverse_benches::{SOURCES, machine, program, timed};
@@ -36,7 +36,8 @@ const WASM: [&str; 2] = [
         (local.set $i (i64.const 1))
         (loop $top
           (if (i64.eqz (i64.rem_s (local.get $i) (i64.const 2)))
-            (then (local.set $total (i64.add (local.get $total) (i64.mul (local.get $i) (i64.const 3)))))
+            (then (local.set $total
+              (i64.add (local.get $total) (i64.mul (local.get $i) (i64.const 3)))))
             (else (local.set $total (i64.sub (local.get $total) (local.get $i)))))
           (if (i64.lt_s (i64.rem_s (local.get $total) (i64.const 7)) (i64.const 3))
             (then (local.set $rest (i64.add (local.get $rest) (i64.const 1))))

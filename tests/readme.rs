@@ -1,7 +1,7 @@
 //! What the documents show is what the program prints: every `console` block of README.md is run.
 //!
-//! In a block a line that begins with `$ obverse` is a command, and what follows is its output up to
-//! the next command. A line of three dots stands for any number of lines.
+//! In a block a line that begins with `$ obverse` is a command, and what follows is its output up
+//! to the next command. A line of three dots stands for any number of lines.
 
 use std::path::Path;
 use std::process::Command;

@@ -45,8 +45,8 @@ pub(crate) fn bytes(path: &Path) -> Result<Vec<u8>, Problem> {
     Ok(bytes)
 }
 
-/// The module of a file, not verified, with the source text and its warnings, if there is one. The
-/// file is a module by its first bytes, assembly text by its name (`.obvasm`), and source otherwise.
+/// The module of a file, not verified, with the source text and its warnings, if there is one. It
+/// is a module by its first bytes, assembly text by its name (`.obvasm`), and source otherwise.
 pub(crate) fn module(path: &Path) -> Result<(Module, Option<Diagnosed>), Problem> {
     let raw = bytes(path)?;
     let extension = path.extension().and_then(|extension| extension.to_str()).unwrap_or("");

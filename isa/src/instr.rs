@@ -176,7 +176,10 @@ macro_rules! make_instructions {
             pub fn each_operand(&self, visit: &mut dyn FnMut(OperandKind, usize, i64)) {
                 match *self {
                     $(Self::$ident { $($field,)* } => {
-                        $(visit(<$ty as Operand>::KIND, <$ty as Operand>::BYTES, $field.to_number());)*
+                        $({
+                            let (kind, bytes) = (<$ty as Operand>::KIND, <$ty as Operand>::BYTES);
+                            visit(kind, bytes, $field.to_number());
+                        })*
                         let _ = &visit;
                     })*
                 }

@@ -98,7 +98,8 @@ macro_rules! index_operand {
             }
 
             fn from_number(value: i64) -> Result<Self, OperandError> {
-                <$repr>::try_from(value).map(Self).map_err(|_| OperandError { kind: Self::KIND, value })
+                let index = <$repr>::try_from(value).map(Self);
+                index.map_err(|_| OperandError { kind: Self::KIND, value })
             }
         }
 

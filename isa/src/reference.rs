@@ -32,9 +32,9 @@ pub fn page() -> String {
 const HEAD: &str = "\
 # The instruction set
 
-Written by the tests from `isa/src/table.rs`; do not edit. `UPDATE=1 cargo test --test isa` refreshes
-it. An instruction is eight bytes: its code, its operands in order, zeros. `prefix` is the number
-of pure instructions before an effect in its statement, and the assembler fills it in.
+Written by the tests from `isa/src/table.rs`; do not edit. `UPDATE=1 cargo test --test isa`
+refreshes it. An instruction is eight bytes: its code, its operands in order, zeros. `prefix` is
+the number of pure instructions before an effect in its statement, and the assembler fills it in.
 ";
 
 fn describe(family: Family) -> &'static str {

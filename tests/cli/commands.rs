@@ -128,6 +128,30 @@ fn back_tells_both_ways_and_compares() {
 }
 
 #[test]
+fn a_call_in_which_nothing_happens_is_not_told() {
+    let bench = Bench::new("quiet");
+    let text = "sequence quiet { return }\nsequence loud { set 1 high }\n\
+                sequence main { call quiet call loud call quiet }\n";
+    bench.write("q.obv", text);
+    let story = bench.ends(0, &["back", "q.obv"]).stdout;
+    assert!(!story.contains("sequence quiet"), "{story}");
+    assert_eq!(story.matches("sequence loud").count(), 2, "{story}");
+    assert_eq!(story.matches("sequence main").count(), 2, "{story}");
+}
+
+/// What is passed over in reverse stays as it is, and is not called identical.
+#[test]
+fn back_says_where_the_workcell_is_left_otherwise() {
+    let bench = Bench::new("otherwise");
+    bench.write("s.obv", "sequence main { skip in reverse { set 1 high } }\n");
+    let ran = bench.ends(0, &["back", "--json", "s.obv"]);
+    let summary = ran.summary();
+    assert_eq!((&summary["outcome"], &summary["identical"]), (&json!("at_start"), &json!(false)));
+    let story = bench.ends(0, &["back", "s.obv"]).stdout;
+    assert!(story.contains("left the workcell otherwise"), "{story}");
+}
+
+#[test]
 fn the_summaries_have_their_figures() {
     let bench = Bench::new("summaries");
     for command in ["run", "back"] {
@@ -227,6 +251,8 @@ fn a_tape_is_recorded_and_shown() {
     assert!(shown.contains("seed 5\nended: finished\n"), "{shown}");
     assert!(has_line(&shown, &["move.item", "move to part.grasp linearly", "joints ["]), "{shown}");
     assert!(has_line(&shown, &["output.set", "set 0 low", "bit 1"]), "{shown}");
+    assert!(has_line(&shown, &["return", "frame of "]), "{shown}");
+    assert!(!shown.contains(" call "), "a call leaves no record: {shown}");
     assert!(shown.ends_with("they lead back to the start\n"), "{shown}");
     let told = bench.ends(0, &["tape", "--json", "t.tape", "--records", "100000"]);
     let records: u64 = told.json().iter().filter_map(|line| line["bits"].as_u64()).sum();

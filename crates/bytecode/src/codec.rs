@@ -11,8 +11,8 @@
 //!     36        payload, by bincode
 //! ```
 //!
-//! The one place that knows bincode, whose line is no longer maintained, so that it can be replaced.
-//! Whatever the bytes, decoding asks for no more memory than [`LIMIT_BYTES`].
+//! The one place that knows bincode, whose line is no longer maintained, so that it can be
+//! replaced. Whatever the bytes, decoding asks for no more memory than [`LIMIT_BYTES`].
 
 use crate::module::Module;
 use bincode::config::{Configuration, Fixint, Limit, LittleEndian};
@@ -112,7 +112,8 @@ impl fmt::Display for DecodeError {
             }
             DecodeErrorKind::Version { found } => write!(
                 f,
-                "byte 8: the {name} has format version {found}, and this is version {version}; {remedy}"
+                "byte 8: the {name} has format version {found}, and this is version {version}; \
+                 {remedy}"
             ),
             DecodeErrorKind::Table { found } => write!(
                 f,

@@ -1,7 +1,7 @@
 //! A module as data: tables, functions, code, and the map back to the source.
 //!
-//! Indices are into the tables of the same module; [`verify`](mod@crate::verify) says what must hold of
-//! them. Lengths are metres, angles radians, times seconds.
+//! Indices are into the tables of the same module; [`verify`](mod@crate::verify) says what must
+//! hold of them. Lengths are metres, angles radians, times seconds.
 
 use obverse_isa::{Instr, Type};
 use serde::{Deserialize, Serialize};

@@ -1,8 +1,8 @@
 //! Driving a machine through a program: what happens when an error is raised or something fails.
 //!
-//! Recovery owns the loop and asks the machine to step; the machine never calls up. It alone decides
-//! how a run goes on after an error; it knows nothing of how motions, tapes or source texts work.
-//! At present the recovery sequences that a program names run as part of its code, so that a
+//! Recovery owns the loop and asks the machine to step; the machine never calls up. It alone
+//! decides how a run goes on after an error; it knows nothing of how motions, tapes or source texts
+//! work. At present the recovery sequences that a program names run as part of its code, so that a
 //! raised error is noted and gone on from; policies of reversal are carried in the module.
 
 use obverse_isa::ErrorId;

@@ -1,7 +1,7 @@
 //! The kinds of record, one type each, named as the instruction table names them.
 //!
-//! What an opcode saves is a type here, so that an implementation that saves something else does not
-//! compile. A record knows which streams it goes to, and how to come back from them.
+//! What an opcode saves is a type here, so that an implementation that saves something else does
+//! not compile. A record knows which streams it goes to, and how to come back from them.
 
 use crate::tape::{Recorder, Tape};
 use obverse_geometry::JointConfiguration;

@@ -94,7 +94,8 @@ fn function(index: u16, first: u32, end: u32) -> Function {
     }
 }
 
-/// Functions without parameters can take a block's place: the last, and one before most calls of it.
+/// Functions without parameters can take a block's place: the last, and one before most calls of
+/// it.
 fn has_parameters(index: u16) -> bool {
     index == 2
 }

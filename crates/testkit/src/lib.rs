@@ -1,4 +1,5 @@
-//! What the tests and the benchmarks share: a workcell of pure bookkeeping, programs, oracles, laws.
+//! What the tests and the benchmarks share: a workcell of pure bookkeeping, programs, oracles,
+//! laws.
 //!
 //! A dev-dependency only: nothing that ships links it.
 

@@ -401,13 +401,15 @@ macro_rules! reverse_arm {
 
 /// Reverse, with the operands there: the updates, and asserted joins.
 macro_rules! with_operands_arm {
-    ($op:expr, $run:ident, $instr:ident, $at:ident, $prefix:expr, $out:lifetime variable always) => {{
+    ($op:expr, $run:ident, $instr:ident, $at:ident, $prefix:expr, $out:lifetime
+        variable always) => {{
         if let Err(failure) = $op.reverse(&mut Variables(&mut $run.values)) {
             break $out trap($at, failure);
         }
         $run.place.pc = $at - $prefix;
     }};
-    ($op:expr, $run:ident, $instr:ident, $at:ident, $prefix:expr, $out:lifetime flow always) => {{
+    ($op:expr, $run:ident, $instr:ident, $at:ident, $prefix:expr, $out:lifetime
+        flow always) => {{
         let mut variables = Variables(&mut $run.values);
         let mut course = Course { variables: &mut variables, way: Way::Beside };
         if let Err(failure) = $op.reverse(&mut course) {

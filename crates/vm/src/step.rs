@@ -71,31 +71,32 @@ macro_rules! acts {
     }};
 }
 
-/// Call the method of an opcode's class, for the families that command, read, set or raise.
+/// Call the method of an opcode's class, for the families that command, read, set or raise:
+/// `$always` or `$recorded`.
 macro_rules! act_arm {
-    ($machine:ident, $host:ident, $op:expr, $always:ident, $recorded:ident, setting $($c:tt)*) => {
-        act_arm!(@ $machine, $host, $op, $always, $recorded, $($c)*)
+    ($m:ident, $host:ident, $op:expr, $always:ident, $recorded:ident, setting $($c:tt)*) => {
+        act_arm!(@ $m, $host, $op, $always, $recorded, $($c)*)
     };
-    ($machine:ident, $host:ident, $op:expr, $always:ident, $recorded:ident, kinematic $($c:tt)*) => {
-        act_arm!(@ $machine, $host, $op, $always, $recorded, $($c)*)
+    ($m:ident, $host:ident, $op:expr, $always:ident, $recorded:ident, kinematic $($c:tt)*) => {
+        act_arm!(@ $m, $host, $op, $always, $recorded, $($c)*)
     };
-    ($machine:ident, $host:ident, $op:expr, $always:ident, $recorded:ident, sense $($c:tt)*) => {
-        act_arm!(@ $machine, $host, $op, $always, $recorded, $($c)*)
+    ($m:ident, $host:ident, $op:expr, $always:ident, $recorded:ident, sense $($c:tt)*) => {
+        act_arm!(@ $m, $host, $op, $always, $recorded, $($c)*)
     };
-    ($machine:ident, $host:ident, $op:expr, $always:ident, $recorded:ident, io $($c:tt)*) => {
-        act_arm!(@ $machine, $host, $op, $always, $recorded, $($c)*)
+    ($m:ident, $host:ident, $op:expr, $always:ident, $recorded:ident, io $($c:tt)*) => {
+        act_arm!(@ $m, $host, $op, $always, $recorded, $($c)*)
     };
-    ($machine:ident, $host:ident, $op:expr, $always:ident, $recorded:ident, error $($c:tt)*) => {
-        act_arm!(@ $machine, $host, $op, $always, $recorded, $($c)*)
+    ($m:ident, $host:ident, $op:expr, $always:ident, $recorded:ident, error $($c:tt)*) => {
+        act_arm!(@ $m, $host, $op, $always, $recorded, $($c)*)
     };
-    (@ $machine:ident, $host:ident, $op:expr, $always:ident, $recorded:ident, always) => {
-        $machine.$always($op, $host)
+    (@ $m:ident, $host:ident, $op:expr, $always:ident, $recorded:ident, always) => {
+        $m.$always($op, $host)
     };
-    (@ $machine:ident, $host:ident, $op:expr, $always:ident, $recorded:ident,
+    (@ $m:ident, $host:ident, $op:expr, $always:ident, $recorded:ident,
         after_forward $record:ident) => {
-        $machine.$recorded::<_, record::$record>($op, $host)
+        $m.$recorded::<_, record::$record>($op, $host)
     };
-    ($machine:ident, $host:ident, $op:expr, $always:ident, $recorded:ident, $($other:tt)*) => {{
+    ($m:ident, $host:ident, $op:expr, $always:ident, $recorded:ident, $($other:tt)*) => {{
         let _ = $op;
         Err(Failure::Trap(TrapKind::TapeEmpty))
     }};
@@ -316,6 +317,10 @@ impl Machine<'_> {
         }
         let done = op.forward(&mut acts, &saved);
         let report = acts.report;
+        if let (Err(Failure::Trap(_)), false, Some(tape)) = (&done, is_again, &mut self.tape) {
+            // The statement has not begun, so nothing of it is recorded.
+            R::pop(tape);
+        }
         done.map(|()| report)
     }
 

@@ -13,5 +13,5 @@ pub mod shadow;
 
 pub use capability::{Arm, Clock, Dice, DigitalIo, ForceTorque, Gripper, Items, Safety, Workcell};
 pub use fault::{Fault, FaultKind};
-pub use shadow::Shadow;
 pub use motion::{Goal, ItemId, Motion, MotionEnd, MotionReport, Path, Speed, ToolId};
+pub use shadow::Shadow;

@@ -2,7 +2,7 @@
 //! a machine walks back over a tape with no robot there.
 
 use crate::{
-    Arm, Clock, DigitalIo, Dice, Fault, ForceTorque, Goal, Gripper, ItemId, Items, Motion,
+    Arm, Clock, Dice, DigitalIo, Fault, ForceTorque, Goal, Gripper, ItemId, Items, Motion,
     MotionEnd, MotionReport, Safety, ToolId, Workcell,
 };
 use obverse_geometry::{JointConfiguration, Pose};
@@ -14,12 +14,8 @@ pub struct Shadow {
     outputs: Vec<bool>,
 }
 
-const NO_MOTION: MotionReport = MotionReport {
-    end: MotionEnd::Reached,
-    distance_m: 0.0,
-    peak_force_n: 0.0,
-    duration_s: 0.0,
-};
+const NO_MOTION: MotionReport =
+    MotionReport { end: MotionEnd::Reached, distance_m: 0.0, peak_force_n: 0.0, duration_s: 0.0 };
 
 impl Shadow {
     /// The shadow of a robot that stands at these joints, with these levels at its outputs.

@@ -6,8 +6,8 @@ use super::error::AsmError;
 use super::resolve::resolve;
 use crate::module::Module;
 
-/// The module that a text says, not yet verified. Of what [`disassemble`](super::disassemble()) wrote,
-/// the same module.
+/// The module that a text says, not yet verified. Of what [`disassemble`](super::disassemble())
+/// wrote, the same module.
 ///
 /// # Errors
 /// What is wrong with the text, in its order; at most [`MAX_ERRORS`](super::MAX_ERRORS).

@@ -1,9 +1,9 @@
 //! Assembly text: a module for people to read, and to write by hand.
 //!
-//! [`disassemble()`] writes everything that a module holds, and [`assemble()`] reads it back: the same
-//! module, byte for byte, verified or not. Neither knows what instructions do; both derive what they
-//! write and accept from the instruction table. Whatever the text or the module, neither panics, and
-//! the memory they take is linear in what they are given.
+//! [`disassemble()`] writes everything that a module holds, and [`assemble()`] reads it back: the
+//! same module, byte for byte, verified or not. Neither knows what instructions do; both derive
+//! what they write and accept from the instruction table. Whatever the text or the module, neither
+//! panics, and the memory they take is linear in what they are given.
 //!
 //! ```text
 //! obvasm 1                               the first line
@@ -15,7 +15,8 @@
 //!     .at KEYFRAME x y z rx ry rz        metres; axis times angle
 //! .tool "NAME"
 //! .error "NAME" SEVERITY                 warning, recoverable, fatal
-//!     .recover none | using FUNCTION | reversing DEPTH EXTENT [perturbed METRES] [slower] [lighter]
+//!     .recover none | using FUNCTION
+//!     .recover reversing DEPTH EXTENT [perturbed METRES] [slower] [lighter]
 //!     .otherwise using FUNCTION | operator | stop
 //!     .respond at_once | after_action | after_sequence
 //!     .then action | next_action | sequence | program | stop
@@ -37,15 +38,15 @@
 //!
 //! DEPTH is `fixed`, `escalating` or `learned`; EXTENT is `actions N`, `checkpoint NAME` or
 //! `sequence`. A table is in the order of its lines, which may stand anywhere. A name is a word or
-//! quoted text; `#7` is the seventh of a table, counted from nought, whatever its name, and `x#7` the
-//! same with its name. `push.const 0.25` and `barrier "why"` add to their tables what is not yet
-//! there. The `prefix` of an instruction is counted, never written. A join may leave out which jump
-//! it is of if one alone names it. `;` begins a comment.
+//! quoted text; `#7` is the seventh of a table, counted from nought, whatever its name, and `x#7`
+//! the same with its name. `push.const 0.25` and `barrier "why"` add to their tables what is not
+//! yet there. The `prefix` of an instruction is counted, never written. A join may leave out which
+//! jump it is of if one alone names it. `;` begins a comment.
 //!
-//! Four lines are for modules that the verifier would refuse: `.code` begins code of no function,
-//! `.range FIRST END` says where a function's code is if not below it, `.parameters N` how many there
-//! are if more than locals, `.prefix N` what the next effect takes for its prefix; and `.map FIRST
-//! FILE START END [ACTION]` is an entry of a source map out of order.
+//! Five lines are for modules that the verifier would refuse: `.code` begins code of no function,
+//! `.range FIRST END` says where a function's code is if not below it, `.parameters N` how many
+//! there are if more than locals, `.prefix N` what the next effect takes for its prefix, and `.map
+//! FIRST FILE START END [ACTION]` is an entry of a source map out of order.
 //!
 //! Read `disassemble`, then `assemble` and `resolve`.
 

@@ -68,5 +68,6 @@ mod tests {
         assert_eq!(distance(b"abc", b"xabc"), 1);
         assert_eq!(distance(b"abc", b"abcxy"), 2);
         assert_eq!(distance(b"xabc", b"abc"), 1);
+        assert_eq!(distance(b"abcxy", b"abc"), 2);
     }
 }

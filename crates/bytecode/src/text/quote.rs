@@ -5,8 +5,8 @@ use std::fmt::Write;
 /// The most of a name that is repeated where it is used, in bytes.
 const MAX_SHOWN: usize = 80;
 
-/// Whether a name can be repeated where it is used. If long ones were, a text would not be linear in
-/// its module.
+/// Whether a name can be repeated where it is used. If long ones were, a text would not be linear
+/// in its module.
 pub(super) fn is_short(name: &str) -> bool {
     name.len() <= MAX_SHOWN
 }
@@ -40,8 +40,8 @@ pub(super) fn quoted(text: &str) -> String {
     out
 }
 
-/// The beginning of a string, on one line, without quotes: for comments and messages. Takes no longer
-/// for a longer string.
+/// The beginning of a string, on one line, without quotes: for comments and messages. Takes no
+/// longer for a longer string.
 pub(super) fn excerpt(text: &str) -> String {
     let mut chars = text.chars().take(4 * MAX_SHOWN).skip_while(|c| c.is_whitespace());
     let out: String = chars

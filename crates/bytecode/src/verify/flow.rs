@@ -2,7 +2,7 @@
 
 use super::{Findings, Rule};
 use crate::module::{Function, Module};
-use obverse_isa::{CounterId, Instr, Label};
+use obverse_isa::{CounterId, Instr, Label, Opcode};
 
 pub(super) fn check(module: &Module, function: &Function, findings: &mut Findings) {
     let code = &module.code;
@@ -83,6 +83,16 @@ struct Region {
     may_leave: bool,
 }
 
+/// The counter of an instruction at an end of a counted loop.
+fn counter_of(instr: Option<&Instr>) -> Option<(Opcode, CounterId)> {
+    match *instr? {
+        Instr::ForEnter { counter, .. } => Some((Opcode::ForEnter, counter)),
+        Instr::ForTop { counter, .. } => Some((Opcode::ForTop, counter)),
+        Instr::ForExit { counter, .. } => Some((Opcode::ForExit, counter)),
+        _ => None,
+    }
+}
+
 #[derive(Default)]
 struct Nesting {
     open: Vec<(usize, Option<CounterId>)>,
@@ -106,20 +116,18 @@ impl Nesting {
                     findings.at(at, Rule::Loops, "the counter is that of a loop around this one");
                 }
                 self.open.push((at, Some(counter)));
-                if !matches!(code.get(at + 1), Some(Instr::ForTop { counter: top, .. }) if *top == counter)
-                {
+                if counter_of(code.get(at + 1)) != Some((Opcode::ForTop, counter)) {
                     findings.at(at, Rule::Loops, "for.top does not follow for.enter");
                 }
             }
             Instr::ForTop { counter, .. } => {
-                let follows = at > 0
-                    && matches!(code[at - 1], Instr::ForEnter { counter: enter, .. } if enter == counter);
-                if !follows {
+                let before = at.checked_sub(1).map(|before| &code[before]);
+                if counter_of(before) != Some((Opcode::ForEnter, counter)) {
                     findings.at(at, Rule::Loops, "for.top does not follow for.enter");
                 }
             }
             Instr::ForNext { counter, target } => {
-                let follows = matches!(code.get(at + 1), Some(Instr::ForExit { counter: exit, .. }) if *exit == counter);
+                let follows = counter_of(code.get(at + 1)) == Some((Opcode::ForExit, counter));
                 let begins = self.open.last().is_some_and(|(begin, _)| begin + 1 == target.index());
                 if !follows || !begins {
                     findings.at(at, Rule::Loops, "for.next does not end the innermost loop");

@@ -10,11 +10,13 @@
 //!    and three words a counter fit 256 slots.
 //! 3. *Operands*: every index is in range; a called function has the parameters that are passed.
 //! 4. *Statements*: a pure prefix and one effect, which knows the prefix's length; the operand
-//!    stack is empty between statements; heights and types fit; no more than [`MAX_OPERANDS`] at once.
+//!    stack is empty between statements; heights and types fit; no more than [`MAX_OPERANDS`] at
+//!    once.
 //! 5. *Joins*: each jump names a join of its function that names it, and each join a jump; the loop
 //!    instructions of one counter name each other. `land` follows what never falls through, and
 //!    nothing else does.
-//! 6. *Counted loops*: `for.enter`, `for.top` … `for.next`, `for.exit`, in this order, the pairs side
+//! 6. *Counted loops*: `for.enter`, `for.top` … `for.next`, `for.exit`, in this order, the pairs
+//!    side
 //!    by side; nothing jumps in from outside; loops that overlap have different counters.
 //! 7. *Updates*: the operand of an update does not read what is updated.
 //! 8. *Blocks*: `block.begin` and its end nest, and nothing jumps in or out.

@@ -44,8 +44,8 @@ const POLL_S: f64 = 0.01;
 /// The most looks at an input that is waited for: more than a day of them.
 const MAX_POLLS: f64 = 1e7;
 
-/// Counts the looks, and not the time that has passed, since a clock that is far on may not be moved
-/// by the little that is left to wait.
+/// Counts the looks, and not the time that has passed, since a clock that is far on may not be
+/// moved by the little that is left to wait.
 fn wait_for(acts: &mut Acts<'_>, op: op::WaitInput) -> Result<bool, Failure> {
     let longest_s = acts.real(0);
     let polls = (longest_s / POLL_S).clamp(0.0, MAX_POLLS);

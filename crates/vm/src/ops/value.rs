@@ -36,8 +36,9 @@ fn of_int(value: i64) -> u64 {
     value.cast_unsigned()
 }
 
+/// What is no number has the same bits on every machine.
 fn of_real(value: f64) -> u64 {
-    value.to_bits()
+    if value.is_nan() { f64::NAN.to_bits() & !(1 << 63) } else { value.to_bits() }
 }
 
 fn of_bool(value: bool) -> u64 {

@@ -188,10 +188,10 @@ fn rule_4_operands_are_bounded() {
         let (pushes, adds) = ("push.int 1\n".repeat(pushes), "int.add\n".repeat(pushes - 1));
         format!("{pushes}{adds}store.local n")
     };
-    // One more than fits into the prefix's byte together with their sum, so of fewer.
     accepted(start(&deep(MAX_OPERANDS)));
-    let why = "more than 128 operands at once";
-    refuses(&deep(MAX_OPERANDS + 1), Rule::Statements, 1 + MAX_OPERANDS as u32, why);
+    let (why, one_more) = ("more than 128 operands at once", deep(MAX_OPERANDS + 1));
+    refuses(&one_more, Rule::Statements, 1 + MAX_OPERANDS as u32, why);
+    assert_eq!(verify(start(&one_more)).map_err(|errors| errors.len()).err(), Some(1));
 }
 
 #[test]

@@ -102,7 +102,8 @@ fn rule_6_loops_have_their_order() {
 #[test]
 fn rule_6_loops_nest() {
     // Two loops that cross: the outer one ends within the inner one.
-    let crossing = "push.int 1\n push.int 2\n for.enter 0, d\n t: for.top 0\n push.int 1\n push.int 2\n \
+    let crossing = "push.int 1\n push.int 2\n for.enter 0, d\n t: for.top 0\n push.int 1\n \
+         push.int 2\n \
                     for.enter 1, dd\n tt: for.top 1\n for.next 0, t\n d: for.exit 0\n \
                     for.next 1, tt\n dd: for.exit 1";
     refuses(crossing, Rule::Loops, 9, "for.next does not end the innermost loop");
@@ -114,7 +115,8 @@ fn rule_6_loops_nest() {
     // The end of a loop that is not the innermost one, without `for.next`.
     let ends = "it does not end the innermost loop or block";
     refused_among(
-        "push.int 1\n push.int 2\n for.enter 0, #5\n a: block.begin\n for.exit 0, #3\n block.skip a",
+        "push.int 1\n push.int 2\n for.enter 0, #5\n a: block.begin\n for.exit 0, #3\n \
+         block.skip a",
         Rule::Loops,
         5,
         ends,

@@ -122,7 +122,8 @@ fn sound_flow_is_accepted() {
             .replace("d: for.exit 0", "d: for.exit 0\n jump over\n out: land\n over: join"),
     ));
     accepted(start(
-        "a: block.begin\n add.local.imm n, 1\n b: block.begin\n block.skip b\n block.replace plain, a",
+        "a: block.begin\n add.local.imm n, 1\n b: block.begin\n block.skip b\n \
+         block.replace plain, a",
     ));
     accepted(start(&format!("a: block.begin\n {LOOP}\n block.skip a")));
     accepted(start(&LOOP.replace(
