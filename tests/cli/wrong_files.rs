@@ -102,6 +102,58 @@ fn a_tape_without_its_records_is_refused() {
     bench.refuses(&["tape", "h.tape"], &["h.tape: its records do not fit the program"]);
 }
 
+/// A tape whose checksum is right and whose content is not: shown as far as it makes sense, or
+/// refused, and the process ends well.
+#[test]
+fn a_tape_with_anything_in_it_is_shown_or_refused() {
+    use obverse_tape::{Snapshot, TapeFile};
+    type Change = fn(&mut Snapshot);
+    let bench = bench("hostile");
+    let (file, module) = TapeFile::from_bytes(&bench.read("t.tape")).expect("a tape");
+    let changes: &[Change] = &[
+        |state| state.steps = 0,
+        |state| state.steps = u64::MAX,
+        |state| state.operands = vec![7; 300],
+        |state| state.frames.clear(),
+        |state| state.frames = vec![state.frames[0].clone(); 2000],
+        |state| state.frames.push(state.frames[0].clone()),
+        |state| state.frames[0].return_pc = u32::MAX,
+        |state| state.frames[0].function = u16::MAX,
+        |state| state.frames[0].words = vec![u64::MAX; 1000],
+        |state| state.frames[0].positions = vec![[f64::NAN; 6]; 1000],
+        |state| state.globals = vec![u64::MAX; 1000],
+        |state| state.settings = [u64::MAX; 2],
+        |state| state.raised = vec![u16::MAX; 1000],
+        |state| state.pending = Some((false, None)),
+        |state| state.pending = Some((true, Some(true))),
+        |state| state.open_blocks = u32::MAX,
+        |state| state.joints = [f64::NAN; 6],
+        |state| state.outputs = Vec::new(),
+    ];
+    let show = |state: Snapshot, what: &str| {
+        let changed = TapeFile { state, ..file.clone() };
+        bench.write("x.tape", changed.to_bytes().expect("bytes"));
+        let ran = bench.run(&["tape", "x.tape"]);
+        assert!(ran.code == 0 || ran.code == 2, "{what}: {}\n{}", ran.code, ran.stderr);
+        assert!(!ran.stderr.contains("panicked"), "{what}: {}", ran.stderr);
+        assert_eq!(
+            ran.code == 2,
+            ran.stderr.starts_with("error: x.tape: "),
+            "{what}: {}",
+            ran.stderr
+        );
+    };
+    for (number, change) in changes.iter().enumerate() {
+        let mut state = file.state.clone();
+        change(&mut state);
+        show(state, &format!("change {number}"));
+    }
+    let end = u32::try_from(module.code.len()).expect("a short program");
+    for pc in (0..=end).chain([u32::MAX]) {
+        show(Snapshot { pc, ..file.state.clone() }, &format!("at {pc}"));
+    }
+}
+
 #[test]
 fn an_output_that_cannot_be_written_is_known_before_the_run() {
     let bench = bench("unwritable");

@@ -12,7 +12,8 @@
 //! ```
 //!
 //! The one place that knows bincode, whose line is no longer maintained, so that it can be
-//! replaced. Whatever the bytes, decoding asks for no more memory than [`LIMIT_BYTES`].
+//! replaced. Whatever the bytes, decoding asks for a few times [`LIMIT_BYTES`] at the most, since
+//! what is read may be larger in memory than in the file.
 
 use crate::module::Module;
 use bincode::config::{Configuration, Fixint, Limit, LittleEndian};
@@ -42,8 +43,8 @@ pub const MODULE: Format = Format {
     name: "module",
     remedy: "compile the program again",
 };
-/// The largest payload, and the most memory that decoding one asks for, in bytes.
-pub const LIMIT_BYTES: usize = 256 << 20;
+/// The largest payload, in bytes.
+pub const LIMIT_BYTES: usize = 64 << 20;
 /// The length of the header.
 pub const HEADER_BYTES: usize = 36;
 

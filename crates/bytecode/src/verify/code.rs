@@ -79,6 +79,14 @@ fn operands(module: &Module, function: &Function, at: usize, findings: &mut Find
             is_right = false;
         }
     });
+    let called = match module.code[at] {
+        Instr::Call { function, .. } | Instr::BlockReplace { function, .. } => Some(function),
+        _ => None,
+    };
+    if is_right && called.is_some_and(|called| called.index() == 0) {
+        findings.at(at, Rule::Operands, "the start is no function to call: it never returns");
+        is_right = false;
+    }
     is_right
 }
 

@@ -8,7 +8,8 @@
 //! 2. *Functions*: they cover the code without gaps, in order; the first is the start; each begins
 //!    with `enter` and ends with `return`, the start with `halt`, and has neither elsewhere; locals
 //!    and three words a counter fit 256 slots.
-//! 3. *Operands*: every index is in range; a called function has the parameters that are passed.
+//! 3. *Operands*: every index is in range; a called function has the parameters that are passed,
+//!    and is not the start.
 //! 4. *Statements*: a pure prefix and one effect, which knows the prefix's length; the operand
 //!    stack is empty between statements; heights and types fit; no more than [`MAX_OPERANDS`] at
 //!    once.

@@ -4,6 +4,7 @@ use super::{Findings, Rule};
 use crate::module::{FunctionKind, Module, Otherwise, Recovery, Variable};
 use crate::{Extent, Function};
 use obverse_isa::{Instr, Type};
+use std::collections::HashSet;
 
 pub(super) fn check(module: &Module, findings: &mut Findings) {
     lengths(module, findings);
@@ -45,6 +46,11 @@ fn numbers(module: &Module, findings: &mut Findings) {
         }
     }
     for item in &module.items {
+        let names: HashSet<u16> = item.keyframes.iter().map(|keyframe| keyframe.name).collect();
+        if names.len() != item.keyframes.len() {
+            let why = format!("item `{}` has two keyframes of one name", item.name);
+            findings.of_module(Rule::Tables, why);
+        }
         for keyframe in &item.keyframes {
             let numbers = keyframe.position_m.iter().chain(&keyframe.rotation_rad);
             if !numbers.copied().all(f64::is_finite) {

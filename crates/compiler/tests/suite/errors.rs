@@ -156,7 +156,7 @@ fn recover_and_do_the_sequence_again() {
         "
         enter
         push.setting speed
-        store.local $speed
+        store.local $initial_speed
         join +22
         push.speed slow
         setting.set speed
@@ -177,12 +177,12 @@ fn recover_and_do_the_sequence_again() {
         jump +6
         land -9
         add.local.imm $rounds 1
-        push.local $speed
+        push.local $initial_speed
         setting.set speed
         jump -22
         land -6
         join -11
-        push.local $speed
+        push.local $initial_speed
         setting.set speed
         return
         ",

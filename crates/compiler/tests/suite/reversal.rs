@@ -109,7 +109,7 @@ fn a_replacement_is_a_function_of_its_own() {
         "
         enter
         push.setting speed
-        store.local $speed
+        store.local $initial_speed
         push.int 1
         store.local x
         push.speed slow
@@ -122,7 +122,7 @@ fn a_replacement_is_a_function_of_its_own() {
         push.joints a
         move.joint
         join -4
-        push.local $speed
+        push.local $initial_speed
         setting.set speed
         return
         ",

@@ -239,9 +239,9 @@ fn a_setting_holds_to_the_end_of_the_sequence() {
         "
         enter
         push.setting speed
-        store.local $speed
+        store.local $initial_speed
         push.setting tool
-        store.local $tool
+        store.local $initial_tool
         push.const 1.0
         wait
         push.speed slow
@@ -256,9 +256,9 @@ fn a_setting_holds_to_the_end_of_the_sequence() {
         jump +2
         land -2
         join -2
-        push.local $speed
+        push.local $initial_speed
         setting.set speed
-        push.local $tool
+        push.local $initial_tool
         setting.set tool
         return
         ",

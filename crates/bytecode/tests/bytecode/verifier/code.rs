@@ -36,6 +36,13 @@ fn rule_3_every_index_is_in_range() {
 }
 
 #[test]
+fn rule_3_the_start_is_not_called() {
+    let why = "the start is no function to call";
+    refuses("add.local.imm n, 1\ncall #0", Rule::Operands, 2, why);
+    refuses("a: block.begin\nblock.replace #0, a", Rule::Operands, 2, why);
+}
+
+#[test]
 fn rule_3_every_kind_of_operand_is_an_index_or_sound_by_itself() {
     let is_sound = |kind: &OperandKind| {
         matches!(

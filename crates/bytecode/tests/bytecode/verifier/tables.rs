@@ -74,6 +74,11 @@ fn rule_1_numbers_are_finite_and_keyframes_have_names() {
     }
     let why = "item `peg` has a keyframe without a name";
     refuses_changed(Rule::Tables, why, |module| module.items[0].keyframes[0].name = 1);
+    let why = "item `peg` has two keyframes of one name";
+    refuses_changed(Rule::Tables, why, |module| {
+        let again = module.items[0].keyframes[0];
+        module.items[0].keyframes.push(again);
+    });
 }
 
 #[test]
