@@ -102,6 +102,37 @@ fn a_tape_without_its_records_is_refused() {
     bench.refuses(&["tape", "h.tape"], &["h.tape: its records do not fit the program"]);
 }
 
+/// A module whose checksum is right and whose content is not: it is not run, and can be looked at.
+#[test]
+fn a_module_that_does_not_verify_is_not_run() {
+    use obverse_bytecode::{Module, decode, encode};
+    type Change = fn(&mut Module);
+    let bench = bench("unverified");
+    let module = decode(&bench.read("m.obc")).expect("a module");
+    let changes: &[Change] = &[
+        |module| module.constants.clear(),
+        |module| module.items.clear(),
+        |module| module.keyframes.clear(),
+        |module| module.functions.clear(),
+        |module| module.functions.truncate(2),
+        |module| module.functions[1].end = u32::MAX,
+        |module| module.functions[1].first = u32::MAX,
+        |module| module.code.clear(),
+        |module| module.code.truncate(5),
+        |module| module.code.reverse(),
+    ];
+    for (number, change) in changes.iter().enumerate() {
+        let mut changed = module.clone();
+        change(&mut changed);
+        bench.write("x.obc", encode(&changed).expect("bytes"));
+        for command in ["check", "run", "back"] {
+            bench.refuses(&[command, "x.obc"], &["error: x.obc: "]);
+        }
+        let shown = bench.run(&["dis", "x.obc"]);
+        assert_eq!((shown.code, shown.stderr.as_str()), (0, ""), "change {number}");
+    }
+}
+
 /// A tape whose checksum is right and whose content is not: shown as far as it makes sense, or
 /// refused, and the process ends well.
 #[test]
