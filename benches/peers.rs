@@ -14,7 +14,7 @@ const LUA: [&str; 2] = [
     "local total, rest = 0, 0
      for i = 1, 1000000 do
        if i % 2 == 0 then total = total + i * 3 else total = total - i end
-       if math.fmod(total, 7) < 3 then rest = rest + 1 else rest = rest - (total - i * 2) end
+       if i % 3 == 0 then rest = rest + 1 else rest = rest - (total - i * 2) end
      end
      return rest",
     "local best, check = 0, 1
@@ -39,7 +39,7 @@ const WASM: [&str; 2] = [
             (then (local.set $total
               (i64.add (local.get $total) (i64.mul (local.get $i) (i64.const 3)))))
             (else (local.set $total (i64.sub (local.get $total) (local.get $i)))))
-          (if (i64.lt_s (i64.rem_s (local.get $total) (i64.const 7)) (i64.const 3))
+          (if (i64.eqz (i64.rem_s (local.get $i) (i64.const 3)))
             (then (local.set $rest (i64.add (local.get $rest) (i64.const 1))))
             (else (local.set $rest (i64.sub (local.get $rest)
               (i64.sub (local.get $total) (i64.mul (local.get $i) (i64.const 2)))))))

@@ -29,7 +29,8 @@ Exit codes:
      as far as the program lets it
   1  the run ended otherwise: an error pending, a fault of the workcell, a trap, the limit
   2  the input is wrong (command line, source, module, tape, workcell file), and nothing was run;
-     or the output cannot be written";
+     or the output cannot be written. With `--json` the last line on standard output is then
+     a summary with the outcome `refused`, and the messages";
 
 #[derive(Subcommand)]
 enum Command {
@@ -51,6 +52,19 @@ enum Command {
     Explain(commands::explain::Arguments),
 }
 
+impl Command {
+    /// Whether machines are told, who then learn what is wrong with the input, too.
+    fn is_json(&self) -> bool {
+        match self {
+            Self::Build(arguments) => arguments.json,
+            Self::Run(arguments) | Self::Back(arguments) => arguments.json,
+            Self::Dis(arguments) => arguments.json,
+            Self::Tape(arguments) => arguments.json,
+            Self::Check(_) | Self::Isa(_) | Self::Explain(_) => false,
+        }
+    }
+}
+
 /// How a command ended, if it could be carried out at all.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Outcome {
@@ -64,6 +78,7 @@ enum Outcome {
 
 fn main() -> ExitCode {
     let arguments = Arguments::parse();
+    let is_json = arguments.command.is_json();
     let outcome = match arguments.command {
         Command::Check(arguments) => commands::check::run(&arguments),
         Command::Build(arguments) => commands::build::run(&arguments),
@@ -80,6 +95,9 @@ fn main() -> ExitCode {
         Ok(Outcome::Wrong) => ExitCode::from(2),
         Err(problem) => {
             show::problem(&problem);
+            if is_json {
+                report::refused(&problem);
+            }
             ExitCode::from(2)
         }
     }

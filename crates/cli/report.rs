@@ -1,12 +1,13 @@
 //! A run for machines, as JSON Lines on standard output: an object an event, and a summary last.
 
-use crate::story;
-use crate::write;
+use crate::problem::Problem;
+use crate::{show, story, write};
 use obverse_bytecode::Module;
 use obverse_recovery::Ending;
 use obverse_vm::{Direction, Event, Machine, Observer, Trap, TrapKind};
 use obverse_workcell::{MotionEnd, Workcell};
 use serde_json::{Map, Value, json};
+use std::collections::BTreeMap;
 
 /// Tells a run to machines as it happens.
 pub(crate) struct Report<'m> {
@@ -78,6 +79,16 @@ pub(crate) fn summary(outcome: &str, figures: Map<String, Value>, more: Map<Stri
     write::line(&Value::Object(object).to_string());
 }
 
+/// The only line of a command that could not be carried out.
+pub(crate) fn refused(problem: &Problem) {
+    summary("refused", Map::new(), Map::from_iter([messages(problem)]));
+}
+
+/// What is wrong, as a field of a summary.
+pub(crate) fn messages(problem: &Problem) -> (String, Value) {
+    ("messages".to_owned(), show::problem_json(problem).into())
+}
+
 /// Where an ending happened, for machines; null if nowhere.
 pub(crate) fn place(module: &Module, pc: Option<u32>) -> Value {
     let Some(pc) = pc else { return Value::Null };
@@ -89,6 +100,26 @@ pub(crate) fn place(module: &Module, pc: Option<u32>) -> Value {
         object["column"] = json!(column);
     }
     object
+}
+
+/// The source lines of instructions. Each is looked for once, however often it is asked for.
+pub(crate) struct Lines<'m> {
+    module: &'m Module,
+    /// By the first instruction of what was written there.
+    found: BTreeMap<u32, Option<usize>>,
+}
+
+impl<'m> Lines<'m> {
+    pub(crate) fn new(module: &'m Module) -> Self {
+        Self { module, found: BTreeMap::new() }
+    }
+
+    /// The line of an instruction, from 1, if it is known.
+    pub(crate) fn of(&mut self, pc: u32) -> Option<usize> {
+        let first = self.module.source_at(pc)?.first;
+        let look = || self.module.place_of(pc).map(|(_, line, _)| line);
+        *self.found.entry(first).or_insert_with(look)
+    }
 }
 
 /// The errors that are pending, by name.
@@ -137,7 +168,7 @@ pub(crate) fn ending_words(module: &Module, ending: &Ending) -> String {
 }
 
 /// Where an instruction was written: `peg_in_hole.obv:42`.
-fn line_of(module: &Module, pc: u32) -> String {
+pub(crate) fn line_of(module: &Module, pc: u32) -> String {
     let place = module.place_of(pc);
     place.map_or_else(|| format!("instruction {pc}"), |(file, line, _)| format!("{file}:{line}"))
 }

@@ -160,7 +160,7 @@ pub(crate) fn diagnostics_json(diagnosed: &Diagnosed) -> Vec<Value> {
 }
 
 /// A message that is no diagnostic of a source text, for machines: without a code.
-pub(crate) fn message_json(message: &Message) -> Value {
+fn message_json(message: &Message) -> Value {
     json!({
         "type": "diagnostic",
         "file": message.file,
@@ -173,4 +173,10 @@ pub(crate) fn message_json(message: &Message) -> Value {
         "notes": [],
         "help": null,
     })
+}
+
+/// What is wrong, for machines: an object a diagnostic of a source text, and one a message.
+pub(crate) fn problem_json(problem: &Problem) -> Vec<Value> {
+    let diagnostics = problem.source.iter().flat_map(diagnostics_json);
+    diagnostics.chain(problem.messages.iter().map(message_json)).collect()
 }

@@ -171,11 +171,24 @@ fn text_of(module: &Module, event: &Event) -> String {
         Instr::ErrorClear { error } => {
             format!("error {}", module.errors[error.index()].name)
         }
-        Instr::Irreversible { .. } if said(module, event.pc) == "}" => {
+        Instr::Irreversible { .. } if is_end(module, event.pc) => {
             "end of what is irreversible".to_owned()
         }
         _ => said(module, event.pc),
     }
+}
+
+/// Whether this is the later of the two instructions around what is irreversible: both are written
+/// in its header.
+fn is_end(module: &Module, pc: u32) -> bool {
+    let function = module.function_at(pc).and_then(|index| module.functions.get(index));
+    let first = function.map_or(pc, |function| function.first);
+    let span = |pc| module.source_at(pc).map(|entry| (entry.file, entry.start, entry.end));
+    let is_begin = |at: u32| {
+        let instr = module.code.get(at as usize);
+        matches!(instr, Some(Instr::Irreversible { .. })) && span(at) == span(pc)
+    };
+    span(pc).is_some() && (first..pc).any(is_begin)
 }
 
 /// What an instruction did, if it is worth telling.

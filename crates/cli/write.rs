@@ -4,10 +4,11 @@ use crate::problem::{Problem, plain};
 use std::borrow::Cow;
 use std::fs;
 use std::io::{self, ErrorKind, Write};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 /// Check that a file can become what a command is about to make, before anything is done: its
-/// folder is there, it is none itself, and it is none of the files that the command reads.
+/// folder is there, it is a regular file or none, and it is none of the files that the command
+/// reads.
 pub(crate) fn check(path: &Path, what: &str, inputs: &[&Path]) -> Result<(), Problem> {
     let cannot = |why: String| Err(Problem::of_file(path, why));
     if path.file_name().is_none() || path.is_dir() {
@@ -17,16 +18,38 @@ pub(crate) fn check(path: &Path, what: &str, inputs: &[&Path]) -> Result<(), Pro
     if let Some(folder) = folder.filter(|folder| !folder.is_dir()) {
         return cannot(format!("cannot be written: there is no folder {}", folder.display()));
     }
-    if let Some(input) = inputs.iter().find(|input| is_same(path, input)) {
+    let target = target(path)?;
+    if let Some(input) = inputs.iter().find(|input| is_same(&target, input)) {
         return cannot(format!("the {what} would overwrite {}", input.display()));
     }
-    let extension = path.extension().and_then(|extension| extension.to_str()).unwrap_or("");
-    if matches!(extension, "obv" | "obvasm" | "toml") {
-        return cannot(format!(
-            "the {what} is no text; `.{extension}` is for files that people write"
-        ));
+    for name in [path, &target] {
+        let extension = name.extension().and_then(|extension| extension.to_str()).unwrap_or("");
+        if matches!(extension, "obv" | "obvasm" | "toml") {
+            return cannot(format!(
+                "the {what} is no text; `.{extension}` is for files that people write"
+            ));
+        }
     }
     Ok(())
+}
+
+/// The file that a path names: where it is a symbolic link, what that leads to. A regular file, or
+/// none yet: a device or a pipe is written to, not replaced, and nothing here does that.
+fn target(path: &Path) -> Result<PathBuf, Problem> {
+    let is_link = fs::symlink_metadata(path).is_ok_and(|metadata| metadata.is_symlink());
+    let target = match is_link {
+        true => fs::canonicalize(path).map_err(|error| {
+            let why = plain(&error);
+            Problem::of_file(path, format!("this link leads nowhere: {why}; name a file"))
+        })?,
+        false => path.to_owned(),
+    };
+    match fs::metadata(&target) {
+        Ok(metadata) if !metadata.is_file() => {
+            Err(Problem::of_file(path, "this is no regular file, and is not replaced by one"))
+        }
+        _ => Ok(target),
+    }
 }
 
 /// Whether two paths lead to one file.
@@ -40,14 +63,12 @@ fn is_same(a: &Path, b: &Path) -> bool {
 /// Write a file by way of a neighbour that takes its name only when it is complete, so that what
 /// was there is kept if anything goes wrong.
 pub(crate) fn file(path: &Path, bytes: &[u8]) -> Result<(), Problem> {
-    let name = path.file_name().map(|name| name.to_string_lossy().into_owned());
-    let Some(name) = name else {
-        return Err(Problem::of_file(path, "this names no file"));
-    };
-    let neighbour = path.with_file_name(format!(".{name}.{}.part", std::process::id()));
+    let target = target(path)?;
+    // Short, so that it fits wherever the name itself does.
+    let neighbour = target.with_file_name(format!(".{}.part", std::process::id()));
     let written = fs::File::create(&neighbour)
         .and_then(|mut file| file.write_all(bytes).and_then(|()| file.sync_all()))
-        .and_then(|()| fs::rename(&neighbour, path));
+        .and_then(|()| fs::rename(&neighbour, &target));
     written.map_err(|error| {
         // What could not be written need not stay; that it cannot be removed changes nothing.
         let _ = fs::remove_file(&neighbour);

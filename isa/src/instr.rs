@@ -166,7 +166,7 @@ macro_rules! make_instructions {
             }
 
             /// How many pure instructions come before this one in its statement.
-            #[inline]
+            #[inline(always)]
             #[must_use]
             pub fn prefix(&self) -> u8 {
                 match *self { $(Self::$ident { $($field,)* } => 0 $(+ $field.as_prefix())*,)* }

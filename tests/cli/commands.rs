@@ -2,6 +2,7 @@
 
 use crate::support::Bench;
 use serde_json::{Value, json};
+use std::collections::BTreeMap;
 
 /// Whether a line of a story has these words, in this order.
 fn has_line(story: &str, words: &[&str]) -> bool {
@@ -124,7 +125,8 @@ fn back_tells_both_ways_and_compares() {
     assert!(has_line(back, &["in reverse", "in place of going back"]), "{back}");
     assert!(back.contains("the state is identical to the start, bit for bit"), "{back}");
     let glue = bench.ends(0, &["back", "glue.obv"]).stdout;
-    assert!(glue.contains("cannot go back past glue.obv:28: the glue is on the block"), "{glue}");
+    assert_eq!(glue.matches("  end of what is irreversible ").count(), 1, "{glue}");
+    assert!(glue.contains("cannot go back past glue.obv:21: the glue is on the block"), "{glue}");
 }
 
 #[test]
@@ -175,7 +177,7 @@ fn the_summaries_have_their_figures() {
     assert_eq!((&back["identical"], &back["stopped_at"]), (&json!(true), &Value::Null));
     let glue = bench.run(&["back", "--json", "glue.obv"]).summary();
     assert_eq!((&glue["outcome"], &glue["identical"]), (&json!("refused"), &json!(false)));
-    assert_eq!(glue["stopped_at"]["line"], 28);
+    assert_eq!(glue["stopped_at"]["line"], 21);
     assert_eq!(glue["stopped_at"]["file"], "glue.obv");
 }
 
@@ -254,13 +256,110 @@ fn a_tape_is_recorded_and_shown() {
     assert!(has_line(&shown, &["return", "frame of "]), "{shown}");
     assert!(!shown.contains(" call "), "a call leaves no record: {shown}");
     assert!(shown.ends_with("they lead back to the start\n"), "{shown}");
-    let told = bench.ends(0, &["tape", "--json", "t.tape", "--records", "100000"]);
-    let records: u64 = told.json().iter().filter_map(|line| line["bits"].as_u64()).sum();
+    let told = bench.ends(0, &["tape", "--json", "t.tape"]);
+    let lines = told.json();
+    let records = lines.iter().filter(|line| line["type"] == "record");
+    let records: u64 = records.filter_map(|line| line["bits"].as_u64()).sum();
     assert_eq!(ran.summary()["tape_bits"], records, "every bit is accounted for");
     let costs = &told.summary()["costs"];
     let bits: u64 =
         costs.as_array().expect("costs").iter().filter_map(|c| c["bits"].as_u64()).sum();
     assert_eq!(bits, records);
+    let summary = told.summary();
+    assert_eq!((&summary["outcome"], &summary["bits"]), (&json!("shown"), &json!(records)));
+    assert_eq!(summary["back_to"]["outcome"], "at_start");
+    assert_eq!(summary["records_not_told"], 0);
+    let cut = bench.ends(0, &["tape", "--json", "t.tape", "--records", "3"]);
+    assert_eq!(cut.json().len(), 4);
+    let all = summary["records"].as_u64().expect("a number");
+    assert_eq!(cut.summary()["records_not_told"], all - 3, "what is cut is said");
+}
+
+/// What a tape costs by instruction and by robot command is the sum of its records.
+#[test]
+fn the_cost_of_a_tape_is_told_by_instruction_and_by_command() {
+    let bench = Bench::new("tape_cost");
+    let ran = bench.ends(0, &["run", "--json", "tower.obv", "--tape", "t.tape"]).summary();
+    let told = bench.ends(0, &["tape", "--json", "t.tape"]);
+    let mut bits = BTreeMap::new();
+    for line in told.json().iter().filter(|line| line["type"] == "record") {
+        let sum = bits.entry(line["instruction"].as_u64()).or_insert(0);
+        *sum += line["bits"].as_u64().expect("bits");
+    }
+    let summary = told.summary();
+    let costs = summary["by_instruction"].as_array().expect("costs");
+    let summed = costs.iter().map(|cost| (cost["instruction"].as_u64(), cost["bits"].as_u64()));
+    assert_eq!(
+        summed.collect::<BTreeMap<_, _>>(),
+        bits.iter().map(|(&a, &b)| (a, Some(b))).collect()
+    );
+    let dear_first = |pair: &[Value]| pair[0]["bits"].as_u64() >= pair[1]["bits"].as_u64();
+    assert!(costs.windows(2).all(dear_first), "{costs:?}");
+    assert!(costs.iter().all(|cost| cost["line"].is_u64() && cost["text"].is_string()));
+    let command = &summary["by_command"];
+    assert_eq!(command["commands"], ran["commands"], "each command is walked over");
+    let of_opcodes = summary["costs"].as_array().expect("costs").iter();
+    let of_commands = of_opcodes.filter(|cost| cost["robot_command"] == true);
+    let sum: u64 = of_commands.filter_map(|cost| cost["bits"].as_u64()).sum();
+    assert_eq!(command["bits"], sum);
+    let count = ran["commands"].as_f64().expect("a number");
+    assert_eq!(command["bits_per_command"], sum as f64 / count);
+    let shown = bench.ends(0, &["tape", "t.tape"]).stdout;
+    assert!(shown.contains(&format!("\n{count} robot commands: ")), "{shown}");
+}
+
+#[test]
+fn words_on_a_tape_are_shown_by_their_type() {
+    let bench = Bench::new("tape_words");
+    let text = "sequence main {\n  var n = 7\n  var r = 0.25\n  var b = true\n  \
+                n = n * n\n  r = r * r\n  b = not b\n  wait 1 s\n}\n";
+    bench.write("w.obv", text);
+    bench.ends(0, &["run", "w.obv", "--tape", "w.tape"]);
+    let lines = bench.ends(0, &["tape", "--json", "w.tape"]).json();
+    let found = |line: u64| {
+        let mut of_line = lines.iter().filter(|record| record["line"] == line);
+        of_line.find_map(|record| record["record"].as_str()).unwrap_or_default().to_owned()
+    };
+    assert_eq!(
+        (found(5), found(6), found(7)),
+        ("int 7".into(), "real 0.25".into(), "bool true".into())
+    );
+    bench.ends(0, &["run", "peg_in_hole.obv", "--tape", "p.tape"]);
+    let shown = bench.ends(0, &["tape", "p.tape", "--records", "100000"]).stdout;
+    assert!(has_line(&shown, &["setting.set", "speed normal"]), "{shown}");
+}
+
+/// However long a run was, its tape is shown in bounded time, and what is left out is said.
+#[test]
+fn the_walk_over_a_tape_is_bounded() {
+    let bench = Bench::new("tape_long");
+    bench.write("l.obv", "sequence main {\n  var n = 0\n  repeat 600000 times { n = n + 1 }\n}\n");
+    let ran = bench.ends(0, &["run", "--json", "l.obv", "--tape", "l.tape"]).summary();
+    assert!(ran["instructions"].as_u64() > Some(1_000_000), "{ran}");
+    let summary = bench.ends(0, &["tape", "--json", "l.tape"]).summary();
+    assert_eq!(summary["back_to"]["outcome"], "limit");
+    assert_eq!(summary["back_to"]["at"]["line"], 3);
+    assert_eq!(summary["bits"], ran["tape_bits"]);
+    let shown = bench.ends(0, &["tape", "l.tape"]).stdout;
+    assert!(shown.contains("l.obv:3 after 1000000 instructions, and further"), "{shown}");
+}
+
+#[test]
+fn machines_are_told_of_a_module_and_its_instructions() {
+    let bench = Bench::new("build_json");
+    let built = bench.ends(0, &["build", "--json", "sheets.obv"]).summary();
+    assert_eq!((&built["outcome"], &built["file"]), (&json!("built"), &json!("sheets.obc")));
+    assert_eq!(built["bytes"], bench.read("sheets.obc").len());
+    let dis = bench.ends(0, &["dis", "--json", "sheets.obc"]);
+    let lines = dis.json();
+    assert_eq!(dis.summary()["instructions"], lines.len() - 1);
+    for line in &lines[..lines.len() - 1] {
+        let opcode = line["opcode"].as_str().expect("an opcode");
+        let row = obverse_isa::OPS.iter().find(|row| row.mnemonic == opcode).expect("a row");
+        assert_eq!(line["class"], row.class.name());
+        let operands = line["operands"].as_object().expect("operands");
+        assert!(row.operands.iter().all(|(name, _)| operands.contains_key(*name)), "{line}");
+    }
 }
 
 #[test]
@@ -269,9 +368,12 @@ fn the_tape_of_a_run_with_a_barrier_leads_back_to_it() {
     bench.ends(0, &["run", "glue.obv", "--tape", "g.tape"]);
     let shown = bench.ends(0, &["tape", "g.tape"]).stdout;
     assert!(
-        shown.ends_with("they lead back to glue.obv:28: the glue is on the block\n"),
+        shown.ends_with("they lead back to glue.obv:21: the glue is on the block\n"),
         "{shown}"
     );
+    let told = bench.ends(0, &["tape", "--json", "g.tape"]).summary();
+    assert_eq!(told["back_to"]["outcome"], "refused");
+    assert_eq!(told["back_to"]["at"]["line"], 21);
     // Taken back all the way, nothing is left on it.
     bench.ends(0, &["back", "tower.obv", "--tape", "b.tape"]);
     let empty = bench.ends(0, &["tape", "--json", "b.tape"]).summary();

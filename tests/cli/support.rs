@@ -86,6 +86,17 @@ impl Bench {
         assert_eq!(ran.stdout, "", "{arguments:?}");
         assert!(before == self.files(), "{arguments:?} changed a file");
     }
+
+    /// Wrong input with `--json`: exit code 2, words on standard error, and on standard output one
+    /// line, a summary. What it says is wrong.
+    pub(crate) fn refuses_as_json(&self, arguments: &[&str]) -> Vec<Value> {
+        let ran = self.ends(2, arguments);
+        assert!(!ran.stderr.is_empty(), "{arguments:?}");
+        assert_eq!(ran.json().len(), 1, "{arguments:?}\n{}", ran.stdout);
+        let summary = ran.summary();
+        assert_eq!(summary["outcome"], "refused", "{arguments:?}");
+        summary["messages"].as_array().expect("messages").clone()
+    }
 }
 
 impl Drop for Bench {

@@ -1,6 +1,7 @@
 //! Modules and tapes that are damaged or foreign, and outputs that cannot or must not be written.
 
 use crate::support::Bench;
+use serde_json::json;
 use std::process::Stdio;
 
 /// A folder with a module `m.obc` and a tape `t.tape` of the same program.
@@ -102,6 +103,19 @@ fn a_tape_without_its_records_is_refused() {
     bench.refuses(&["tape", "h.tape"], &["h.tape: its records do not fit the program"]);
 }
 
+/// A tape that says that the run was shorter than its records: the walk ends all the same.
+#[test]
+fn a_tape_that_leads_past_its_start_is_refused() {
+    use obverse_tape::TapeFile;
+    let bench = bench("short");
+    let (mut file, _) = TapeFile::from_bytes(&bench.read("t.tape")).expect("a tape");
+    for steps in [0, 1, 5, file.state.steps - 1] {
+        file.state.steps = steps;
+        bench.write("s.tape", file.to_bytes().expect("bytes"));
+        bench.refuses(&["tape", "s.tape"], &["s.tape: its records do not fit the program: "]);
+    }
+}
+
 /// A module whose checksum is right and whose content is not: it is not run, and can be looked at.
 #[test]
 fn a_module_that_does_not_verify_is_not_run() {
@@ -157,7 +171,6 @@ fn a_tape_with_anything_in_it_is_shown_or_refused() {
         |state| state.raised = vec![u16::MAX; 1000],
         |state| state.pending = Some((false, None)),
         |state| state.pending = Some((true, Some(true))),
-        |state| state.open_blocks = u32::MAX,
         |state| state.joints = [f64::NAN; 6],
         |state| state.outputs = Vec::new(),
     ];
@@ -226,6 +239,70 @@ fn an_output_by_another_name_is_known_for_the_same_file() {
     let bench = bench("linked");
     std::os::unix::fs::symlink(bench.path("m.obc"), bench.path("link.obc")).expect("a link");
     bench.refuses(&["build", "m.obc", "-o", "link.obc"], &["would overwrite m.obc"]);
+}
+
+/// What a link leads to is written, and the link stays one.
+#[cfg(unix)]
+#[test]
+fn an_output_through_a_link_goes_where_the_link_leads() {
+    use std::os::unix::fs::symlink;
+    let bench = bench("through_link");
+    bench.write("kept.obc", "old");
+    symlink("kept.obc", bench.path("link.obc")).expect("a link");
+    bench.ends(0, &["build", "screws.obv", "-o", "link.obc"]);
+    bench.ends(0, &["check", "kept.obc"]);
+    assert!(std::fs::symlink_metadata(bench.path("link.obc")).expect("a file").is_symlink());
+    symlink("screws.obv", bench.path("text.obc")).expect("a link");
+    bench.refuses(&["build", "tower.obv", "-o", "text.obc"], &["`.obv`"]);
+    symlink("nothing.obc", bench.path("lost.obc")).expect("a link");
+    bench
+        .refuses(&["build", "tower.obv", "-o", "lost.obc"], &["lost.obc: this link leads nowhere"]);
+    symlink("round.obc", bench.path("round.obc")).expect("a link");
+    bench.refuses(&["build", "tower.obv", "-o", "round.obc"], &["this link leads nowhere"]);
+}
+
+/// A pipe or a device would be replaced by a file.
+#[cfg(unix)]
+#[test]
+fn an_output_that_is_no_regular_file_is_refused() {
+    use std::os::unix::fs::{FileTypeExt, symlink};
+    let folder = Bench::new("pipes");
+    let made = std::process::Command::new("mkfifo").arg(folder.path("pipe")).status();
+    assert!(made.expect("mkfifo").success());
+    symlink("pipe", folder.path("link")).expect("a link");
+    for name in ["pipe", "link"] {
+        let build = ["build", "tower.obv", "-o", name];
+        let run = ["run", "tower.obv", "--tape", name];
+        let back = ["back", "tower.obv", "--tape", name];
+        for arguments in [build, run, back] {
+            let ran = folder.ends(2, &arguments);
+            assert!(ran.stderr.contains("no regular file"), "{}", ran.stderr);
+            assert_eq!(ran.stdout, "");
+        }
+    }
+    let pipe = std::fs::symlink_metadata(folder.path("pipe")).expect("the pipe");
+    assert!(pipe.file_type().is_fifo());
+}
+
+/// The run was made: what came of it is told, although its tape is lost.
+#[test]
+fn a_tape_that_cannot_be_written_loses_no_figures() {
+    let bench = Bench::new("lost_tape");
+    // No folder takes such a name, which is only known when the file is made.
+    let name = "t".repeat(300);
+    for (command, last) in [("run", " bits of tape, "), ("back", " instructions taken back, ")] {
+        let ran = bench.ends(2, &[command, "tower.obv", "--tape", &name]);
+        assert!(ran.stderr.contains("cannot be written"), "{}", ran.stderr);
+        assert!(ran.stdout.lines().last().is_some_and(|line| line.contains(last)));
+        let ran = bench.ends(2, &[command, "--json", "tower.obv", "--tape", &name]);
+        let (lines, summary) = (ran.json(), ran.summary());
+        assert_eq!(lines.iter().filter(|line| line["type"] == "summary").count(), 1);
+        assert!(summary["tape_bits"].as_u64() > Some(0), "{summary}");
+        assert_eq!(summary["messages"][0]["file"], json!(name));
+    }
+    assert!(bench.files().keys().all(|name| !name.contains(".part")));
+    // As long as a name can be.
+    bench.ends(0, &["run", "tower.obv", "--tape", &"t".repeat(250)]);
 }
 
 /// What was there before stays if the new program is wrong, and goes as a whole if it is right.

@@ -1,6 +1,7 @@
 //! Programs, workcells and command lines that are wrong.
 
 use crate::support::Bench;
+use serde_json::{Value, json};
 
 #[test]
 fn files_that_are_not_there_or_no_files() {
@@ -139,4 +140,28 @@ fn command_lines_that_are_wrong() {
     bench.refuses(&["explain", "move.joins"], &["did you mean `move.joint`?"]);
     bench.refuses(&["explain", ""], &["neither"]);
     bench.refuses(&[], &["Usage"]);
+}
+
+#[test]
+fn machines_are_told_what_is_wrong_with_the_input() {
+    let bench = Bench::new("refused_json");
+    bench.write("e.obv", "sequence main {\n  wait 3 mm\n}\n");
+    bench.write("e.obvasm", "nothing\n");
+    for command in ["run", "back", "build", "dis", "tape"] {
+        let missing = bench.refuses_as_json(&[command, "--json", "none.obv"]);
+        assert_eq!(missing.len(), 1);
+        assert_eq!((&missing[0]["file"], &missing[0]["code"]), (&json!("none.obv"), &Value::Null));
+        assert!(missing[0]["message"].as_str().is_some_and(|text| text.contains("no such file")));
+    }
+    for command in ["run", "back", "build", "dis"] {
+        let checked = bench.ends(2, &["check", "--json", "e.obv"]).json();
+        let wrong = bench.refuses_as_json(&[command, "--json", "e.obv"]);
+        assert_eq!((&wrong[0]["code"], &wrong[0]["line"]), (&json!("E0202"), &json!(2)));
+        assert_eq!(wrong, checked[..checked.len() - 1], "as `check` says it");
+        let assembly = bench.refuses_as_json(&[command, "--json", "e.obvasm"]);
+        assert_eq!(assembly[0]["line"], 1);
+    }
+    let lacking = ["run", "--json", "tower.obv", "--cell", "pin_cell.toml"];
+    assert_eq!(bench.refuses_as_json(&lacking).len(), 3);
+    bench.refuses_as_json(&["run", "--json", "tower.obv", "--tape", "tower.obv"]);
 }

@@ -50,7 +50,7 @@ pub(crate) fn of(machine: &Machine<'_>, cell: &Cell) -> Picture {
     put("tool", vec![state.settings[1]]);
     put("raised", state.raised.iter().map(|&error| u64::from(error)).collect());
     put("draws", vec![state.draws]);
-    put("blocks", vec![u64::from(state.open_blocks)]);
+    put("blocks", vec![u64::from(machine.state().open_blocks())]);
     let pending = state.pending.map_or(0, |(is_reverse, _)| 1 + u64::from(is_reverse));
     put("pending", vec![pending]);
     put("joints", bits(&state.joints));

@@ -257,7 +257,9 @@ impl<'t> Trial<'t> {
                 let reason = reason.map(|reason| module.reasons[reason.index()].clone());
                 ("refused", reason.unwrap_or_default())
             }
-            Err(stop @ (Stop::AtMark | Stop::Budget)) => return Err(format!("{stop:?}")),
+            Err(stop @ (Stop::AtMark | Stop::OffMark | Stop::Budget)) => {
+                return Err(format!("{stop:?}"));
+            }
         };
         let pc = match outcome {
             Err(Stop::Trap(Trap { pc, .. }) | Stop::Refused(Refusal { pc, .. }))

@@ -4,7 +4,7 @@ use super::Result;
 use super::run;
 use crate::load;
 use crate::report;
-use crate::{Outcome, write};
+use crate::write;
 use obverse_recovery::Ending;
 use obverse_vm::Direction;
 use obverse_workcell::{Clock, Safety};
@@ -32,9 +32,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result {
         cell.release();
     }
     let back = run::go(arguments, &mut machine, Direction::Reverse, &mut cell);
-    if let Some(path) = &arguments.tape {
-        run::record(path, &program, &machine, &cell, arguments.seed, &back)?;
-    }
+    let recorded = run::record(arguments, &program, &machine, &cell, &back);
     let is_identical = back == Ending::AtStart && machine.digest(&cell) == start;
     let back_s = cell.now_s() - there_s;
     if arguments.json {
@@ -48,6 +46,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result {
         more.insert("forward_instructions".to_owned(), json!(forward_instructions));
         more.insert("forward_time_s".to_owned(), json!(there_s));
         more.insert("reverse_time_s".to_owned(), json!(back_s));
+        more.extend(recorded.as_ref().err().map(report::messages));
         report::summary(back.code(), figures, more);
     } else {
         let verdict = match (&back, is_identical) {
@@ -65,5 +64,5 @@ pub(crate) fn run(arguments: &Arguments) -> Result {
         write::line(&format!("{instructions} instructions taken back, {back_s:.2} s"));
     }
     let went = matches!(back, Ending::AtStart | Ending::Refused(_));
-    Ok(if went { Outcome::Done } else { Outcome::EndedOtherwise })
+    Ok(run::outcome(went, recorded))
 }

@@ -3,6 +3,7 @@
 use super::Result;
 use crate::problem::Problem;
 use crate::{Outcome, load, write};
+use serde_json::json;
 use std::path::PathBuf;
 
 #[derive(clap::Args)]
@@ -12,6 +13,9 @@ pub(crate) struct Arguments {
     /// The module to write; beside the program, with the extension `.obc`, where none is named.
     #[arg(short, long, value_name = "FILE")]
     output: Option<PathBuf>,
+    /// For machines: a summary.
+    #[arg(long)]
+    pub(crate) json: bool,
 }
 
 pub(crate) fn run(arguments: &Arguments) -> Result {
@@ -21,6 +25,16 @@ pub(crate) fn run(arguments: &Arguments) -> Result {
     let bytes = obverse_bytecode::encode(program.verified.module())
         .map_err(|error| Problem::of_file(&arguments.file, error))?;
     write::file(&output, &bytes)?;
-    write::line(&format!("{}: {} bytes", output.display(), bytes.len()));
+    if arguments.json {
+        let summary = json!({
+            "type": "summary",
+            "outcome": "built",
+            "file": output.display().to_string(),
+            "bytes": bytes.len(),
+        });
+        write::line(&summary.to_string());
+    } else {
+        write::line(&format!("{}: {} bytes", output.display(), bytes.len()));
+    }
     Ok(Outcome::Done)
 }

@@ -65,14 +65,11 @@ fn as_json(arguments: &Arguments) -> Result {
     match &checked {
         Ok(cell) => summary["workcell"] = json!(cell),
         Err(problem) => {
+            let all = show::problem_json(problem);
+            all.iter().for_each(|one| write::line(&one.to_string()));
             if let Some(diagnosed) = &problem.source {
-                let all = show::diagnostics_json(diagnosed);
-                all.iter().for_each(|one| write::line(&one.to_string()));
                 errors += show::count(&diagnosed.diagnostics, Severity::Error);
                 warnings += show::count(&diagnosed.diagnostics, Severity::Warning);
-            }
-            for message in &problem.messages {
-                write::line(&show::message_json(message).to_string());
             }
             errors += problem.messages.len();
         }

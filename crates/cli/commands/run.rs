@@ -5,7 +5,7 @@ use crate::load::{self, Program};
 use crate::problem::Problem;
 use crate::report::{self, Report};
 use crate::story::Story;
-use crate::{Outcome, write};
+use crate::{Outcome, show, write};
 use obverse_recovery::{Ending, drive};
 use obverse_sim::Sim;
 use obverse_tape::TapeFile;
@@ -41,11 +41,22 @@ pub(crate) fn run(arguments: &Arguments) -> Result {
     let mut machine = load::machine(&program, &cell, &cell_name)?;
     head(arguments, &cell_name);
     let ending = go(arguments, &mut machine, Direction::Forward, &mut cell);
-    if let Some(path) = &arguments.tape {
-        record(path, &program, &machine, &cell, arguments.seed, &ending)?;
+    let recorded = record(arguments, &program, &machine, &cell, &ending);
+    finish(arguments, &machine, &cell, &ending, recorded.as_ref().err());
+    Ok(outcome(ending == Ending::Finished, recorded))
+}
+
+/// The outcome of a run that has been told. That its tape was not written is said last: the run
+/// itself is no less true.
+pub(crate) fn outcome(is_done: bool, recorded: std::result::Result<(), Problem>) -> Outcome {
+    match (is_done, recorded) {
+        (_, Err(problem)) => {
+            show::problem(&problem);
+            Outcome::Wrong
+        }
+        (true, Ok(())) => Outcome::Done,
+        (false, Ok(())) => Outcome::EndedOtherwise,
     }
-    finish(arguments, &machine, &cell, &ending);
-    Ok(if ending == Ending::Finished { Outcome::Done } else { Outcome::EndedOtherwise })
 }
 
 /// The workcell of a run, once it is sure that its tape has a place to go.
@@ -91,21 +102,21 @@ pub(crate) fn go(
     ending
 }
 
-/// Write the tape file of a run.
+/// Write the tape file of a run, if it was asked for.
 pub(crate) fn record(
-    path: &Path,
+    arguments: &Arguments,
     program: &Program,
     machine: &Machine<'_>,
     cell: &Sim,
-    seed: u64,
     ending: &Ending,
 ) -> std::result::Result<(), Problem> {
+    let Some(path) = &arguments.tape else { return Ok(()) };
     let cannot = |error| Problem::of_file(path, error);
     let module = obverse_bytecode::encode(program.verified.module()).map_err(cannot)?;
     let file = TapeFile {
         fingerprint: obverse_bytecode::fingerprint(&module),
         module,
-        seed,
+        seed: arguments.seed,
         ending: report::ending_words(program.verified.module(), ending),
         state: machine.snapshot(cell),
         streams: machine.streams(),
@@ -113,7 +124,13 @@ pub(crate) fn record(
     write::file(path, &file.to_bytes().map_err(cannot)?)
 }
 
-fn finish(arguments: &Arguments, machine: &Machine<'_>, cell: &Sim, ending: &Ending) {
+fn finish(
+    arguments: &Arguments,
+    machine: &Machine<'_>,
+    cell: &Sim,
+    ending: &Ending,
+    unrecorded: Option<&Problem>,
+) {
     let module = machine.program().module();
     let words = report::ending_words(module, ending);
     if arguments.json {
@@ -121,6 +138,7 @@ fn finish(arguments: &Arguments, machine: &Machine<'_>, cell: &Sim, ending: &End
         more.insert("message".to_owned(), json!(words));
         more.insert("errors".to_owned(), report::pending(machine));
         more.insert("stopped_at".to_owned(), report::place(module, report::ending_pc(ending)));
+        more.extend(unrecorded.map(report::messages));
         report::summary(ending.code(), report::figures(machine, cell), more);
         return;
     }

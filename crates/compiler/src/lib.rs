@@ -9,6 +9,7 @@ mod effects;
 mod fold;
 mod keyframes;
 mod lower;
+mod recursion;
 mod report;
 mod response;
 mod reversal;
@@ -40,6 +41,7 @@ pub fn compile(source_name: &str, source: &str) -> Compiled {
     let module = program.filter(|_| is_whole).and_then(|program| {
         let effects = Effects::of(&program);
         reversal::check(&program, &effects, &mut reports);
+        recursion::check(&program, &effects, &mut reports);
         match reports.has_errors() {
             true => None,
             false => lower::lower(program, &effects, &mut reports),

@@ -21,7 +21,7 @@ pub(crate) struct Reports {
 }
 
 /// What may be a consequence of a part that the parser has left out.
-const OF_ABSENCE: [Code; 9] = [
+const OF_ABSENCE: [Code; 8] = [
     Code::UnknownName,
     Code::UnknownKeyframe,
     Code::UnknownCheckpoint,
@@ -30,7 +30,6 @@ const OF_ABSENCE: [Code; 9] = [
     Code::BreakOutsideLoop,
     Code::NoNamedPosition,
     Code::ArgumentCount,
-    Code::VectorLength,
 ];
 
 impl Reports {

@@ -308,8 +308,8 @@ pub(crate) struct GuardedMove {
     pub(crate) axis: Axis,
     /// In which frame.
     pub(crate) frame: Frame,
-    /// The force that stops it, in newtons.
-    pub(crate) limit: Prepared,
+    /// The force that stops it, in newtons; without one, contact is a collision.
+    pub(crate) limit: Option<Prepared>,
     /// Its speed, and where the former one is kept meanwhile.
     pub(crate) speed: Option<(SpeedId, LocalId)>,
     /// What it comes to: metres and newtons.
@@ -474,14 +474,17 @@ impl Expression {
 impl Block {
     /// Call `visit` with each statement, those in blocks within included.
     pub(crate) fn each_statement<'t>(&'t self, visit: &mut impl FnMut(&'t Statement)) {
-        for statement in &self.statements {
-            visit(statement);
-            statement.each_block(&mut |block| block.each_statement(visit));
-        }
+        self.statements.iter().for_each(|statement| statement.each(visit));
     }
 }
 
 impl Statement {
+    /// Call `visit` with this statement and with each one within it.
+    pub(crate) fn each<'t>(&'t self, visit: &mut impl FnMut(&'t Self)) {
+        visit(self);
+        self.each_block(&mut |block| block.each_statement(visit));
+    }
+
     fn each_block<'t>(&'t self, visit: &mut dyn FnMut(&'t Block)) {
         match &self.kind {
             StatementKind::If { then, otherwise, .. } => {

@@ -59,13 +59,15 @@ pub fn drive(
     cell: &mut dyn Workcell,
     observer: &mut dyn Observer,
 ) -> Ending {
+    let begin = machine.executed();
     loop {
-        return match machine.run(direction, limits, cell, observer) {
+        let left = limits.instructions.saturating_sub(machine.executed() - begin);
+        return match machine.run(direction, Limits::instructions(left), cell, observer) {
             // What follows the raise in the code is what happens once reversal has been given up.
             Stop::Raised { .. } => continue,
             Stop::Finished if machine.state().raised().is_empty() => Ending::Finished,
             Stop::Finished => Ending::Unhandled(machine.state().raised().to_vec()),
-            Stop::AtStart | Stop::AtMark => Ending::AtStart,
+            Stop::AtStart | Stop::AtMark | Stop::OffMark => Ending::AtStart,
             Stop::Budget => Ending::Budget,
             Stop::Fault { fault, pc, direction } => Ending::Fault { fault, pc, direction },
             Stop::Refused(refusal) => Ending::Refused(refusal),

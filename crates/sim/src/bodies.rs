@@ -48,7 +48,7 @@ pub(crate) struct Moving {
     pub(crate) is_peg: bool,
     /// An upper bound on the way of any point of it along the whole route, in millimetres.
     pub(crate) way_mm: f64,
-    /// Pressed harder than this by a motion without a force limit it has collided, in newtons.
+    /// Pressed harder than this it has collided, in newtons, but for a guard that reads late.
     pub(crate) stop_n: f64,
     /// Pressed harder than this by any motion it has collided: its margin is used up.
     pub(crate) give_n: f64,

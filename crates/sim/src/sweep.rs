@@ -71,6 +71,8 @@ struct Pair {
     force_n: Vector3<f64>,
     /// The least force between the two so far: less than that may always be gone back to.
     least_n: f64,
+    /// Whether they press on each other where the route begins.
+    begins_pressed: bool,
 }
 
 impl Pair {
@@ -83,6 +85,7 @@ impl Pair {
             stride: 0.0,
             force_n: Vector3::zeros(),
             least_n: f64::INFINITY,
+            begins_pressed: false,
         }
     }
 }
@@ -193,18 +196,16 @@ impl<'a> Sweep<'a> {
         let mut fraction = 0.0;
         loop {
             let seen = self.look(fraction);
+            // A guard that reads late still stops the motion, but where it began pressed already.
+            if let Some(index) = seen.collided.filter(|index| self.pairs[*index].begins_pressed) {
+                return self.collide(index, before, fraction, &mut reader);
+            }
             let here = Look { fraction, force_n: seen.force_n };
             if let Some(stop) = reader.pass(before, here) {
-                let force_n = self.look_again(stop);
-                return Outcome {
-                    fraction: stop,
-                    end: End::Force,
-                    peak_n: reader.peak_n(),
-                    force_n,
-                };
+                return self.stop(stop, &reader);
             }
             if let Some(index) = seen.collided {
-                return self.collide(index, before.fraction, fraction, &mut reader);
+                return self.collide(index, before, fraction, &mut reader);
             }
             if fraction >= until {
                 let (peak_n, force_n) = (reader.peak_n(), seen.force_n);
@@ -231,7 +232,9 @@ impl<'a> Sweep<'a> {
             let horizon = if early { fraction + EARLY } else { fraction };
             if pair.touching || pair.due <= horizon {
                 self.look_at(pair, &mut place);
-                pair.least_n = pair.least_n.min(pair.force_n.norm());
+                let force_n = pair.force_n.norm();
+                pair.begins_pressed |= fraction <= 0.0 && force_n > 0.0;
+                pair.least_n = pair.least_n.min(force_n);
             }
             if pair.touching {
                 seen.touching = true;
@@ -288,23 +291,33 @@ impl<'a> Sweep<'a> {
         pair.due = fraction + (apart_mm - 0.5 * SKIN_MM) / moving.way_mm;
     }
 
-    /// Whether a pair is pressed too hard, and harder than it was before on this route.
+    /// Whether a pair is pressed too hard, and harder than it was before on this route. A guard
+    /// reads late, and so a motion that has one may press harder, up to what a body gives; but not
+    /// a pair that it begins in contact with, or a row of such motions would press ever harder.
     fn is_collided(&self, pair: &Pair) -> bool {
         let moving = &self.moving[pair.moving];
-        let stop_n = if self.guarded { moving.give_n } else { moving.stop_n };
+        let reads_late = self.guarded && !pair.begins_pressed;
+        let stop_n = if reads_late { moving.give_n } else { moving.stop_n };
         pair.force_n.norm() > stop_n.max(pair.least_n + ROUNDING_N)
     }
 
-    /// Go back to where the force of a pair became too much; there the motion ends.
+    /// The motion ends where the reading exceeded the limit.
+    fn stop(&mut self, fraction: f64, reader: &Reader<'_>) -> Outcome {
+        let force_n = self.look_again(fraction);
+        Outcome { fraction, end: End::Force, peak_n: reader.peak_n(), force_n }
+    }
+
+    /// Go back to where the force of a pair became too much; there the motion ends, if the guard
+    /// has not stopped it before.
     fn collide(
         &mut self,
         index: usize,
-        before: f64,
+        before: Look,
         fraction: f64,
         reader: &mut Reader<'_>,
     ) -> Outcome {
         let mut pairs = std::mem::take(&mut self.pairs);
-        let (mut low, mut high) = (before, fraction);
+        let (mut low, mut high) = (before.fraction, fraction);
         for _ in 0..BISECTIONS {
             let middle = 0.5 * (low + high);
             self.look_at(&mut pairs[index], &mut Place::at(self.route, middle));
@@ -316,6 +329,9 @@ impl<'a> Sweep<'a> {
         }
         self.pairs = pairs;
         let force_n = self.look_again(high);
+        if let Some(stop) = reader.pass(before, Look { fraction: high, force_n }) {
+            return self.stop(stop, reader);
+        }
         let end = if reader.sample(force_n) {
             End::Force
         } else {

@@ -6,7 +6,9 @@ use common::{bench_cell, by_joints, push, to_pose, world_bits};
 use nalgebra::Vector3;
 use obverse_geometry::Pose;
 use obverse_sim::Sim;
-use obverse_workcell::{Arm, Clock, DigitalIo, Gripper, ItemId, Items, MotionEnd, Path, ToolId};
+use obverse_workcell::{
+    Arm, Clock, DigitalIo, Fault, Gripper, ItemId, Items, Motion, MotionEnd, Path, Safety, ToolId,
+};
 
 fn above(pose: &Pose, height_m: f64) -> Pose {
     pose.displaced(Vector3::new(0.0, 0.0, height_m))
@@ -70,6 +72,30 @@ fn the_pin_goes_into_the_socket() {
     assert!((report.distance_m - 0.09).abs() < 1e-3, "{report:?}");
     sim.set_output(0, false).unwrap();
     sim.execute(&to_pose(over, Path::Linear)).unwrap();
+}
+
+/// Motions in a row, each of which begins where the one before was stopped.
+#[test]
+fn a_row_of_guarded_motions_presses_no_harder_than_the_first() {
+    let mut sim = Sim::new(&bench_cell(), 1);
+    let tool = sim.tool("probe").unwrap();
+    let block = sim.nominal_pose(sim.item("block_c").unwrap()).unwrap();
+    sim.execute(&Motion { tool, ..to_pose(above(&block, 0.025), Path::Joint) }).unwrap();
+    let first = sim.execute(&Motion { tool, ..push(sim.joints(), 0.02, 15.0) }).unwrap();
+    assert_eq!(first.end, MotionEnd::StoppedByForce);
+    let stopped_at = sim.joints();
+    for _ in 0..20 {
+        let next = sim.execute(&Motion { tool, ..push(sim.joints(), 0.02, 15.0) }).unwrap();
+        assert_eq!(next.end, MotionEnd::StoppedByForce);
+        assert!(next.distance_m < 1e-9, "{next:?}");
+    }
+    // With a limit that is never read, it is the stop force that ends it.
+    let harder = sim.execute(&Motion { tool, ..push(stopped_at, 0.02, 500.0) });
+    assert!(matches!(harder, Err(Fault::Collision { .. })), "{harder:?}");
+    sim.release();
+    // The way out is free.
+    let out = sim.execute(&Motion { tool, ..push(sim.joints(), -0.02, 15.0) });
+    assert_eq!(out.unwrap().end, MotionEnd::Reached);
 }
 
 fn tcp(sim: &Sim) -> Pose {

@@ -345,14 +345,16 @@ codes! {
              tcp`."
         wrong "advanced move insert { stop if force > 5 N }\n\
                sequence main { advance insert }"
-        right "advanced move insert { distance 20 mm forward stop if force > 5 N }\n\
+        right "advanced move insert {\n  distance 20 mm forward\n  stop if force > 5 N\n  \
+               succeeds if force > 5 N\n}\n\
                sequence main { advance insert }"
     StopCondition "E0305" "a motion cannot be stopped by this"
         why "A guarded motion is stopped by the workcell itself, at the instant when the contact \
              force exceeds a limit: `stop if force > 5 N`. How far it goes is its distance."
         wrong "advanced move insert { distance 20 mm forward stop if holding }\n\
                sequence main { advance insert }"
-        right "advanced move insert { distance 20 mm forward stop if force > 5 N }\n\
+        right "advanced move insert {\n  distance 20 mm forward\n  stop if force > 5 N\n  \
+               succeeds if force > 5 N\n}\n\
                sequence main { advance insert }"
     BreakOutsideLoop "E0306" "a `break` without a loop"
         why "`break` leaves the innermost loop of the same sequence. `return` leaves the sequence."
@@ -471,4 +473,23 @@ codes! {
                sequence main { if half > 0 { wait 1 s } }"
         right "var half = 1.0 / 2\n\
                sequence main { if half > 0 { wait 1 s } }"
+    SilentStop "W0004" "a move whose stop is a failure that nothing follows"
+        why "A move has succeeded if it came all the way, so that one that a force stops has \
+             failed. Without `on failure` the program goes on as if it had not. Where the contact \
+             is what the move is for, say so by `succeeds if`, for example `succeeds if force > \
+             5 N`; where it is not, say in `on failure` what follows."
+        wrong "advanced move probe { distance 20 mm down in base stop if force > 5 N }\n\
+               sequence main { advance probe }"
+        right "error no_contact { }\n\
+               advanced move probe {\n  distance 20 mm down in base\n  stop if force > 5 N\n  \
+               succeeds if force > 5 N\n  on failure { throw no_contact }\n}\n\
+               sequence main { advance probe }"
+    EndlessRecursion "W0005" "a sequence that always calls itself"
+        why "Each call waits for the one within, so that a sequence that calls itself on every way \
+             through it never ends: the machine refuses the call that is too deep. To do something \
+             again write a loop."
+        wrong "sequence blink { toggle 0 wait 1 s call blink }\n\
+               sequence main { call blink }"
+        right "sequence blink { loop { toggle 0 wait 1 s } }\n\
+               sequence main { call blink }"
 }

@@ -8,6 +8,7 @@ use crate::foreign;
 use crate::nesting::{Nesting, Refusal};
 use crate::sink::{MAX_IDLE_TOKENS, Sink, Stopped};
 use crate::span::Span;
+use crate::surroundings::Surroundings;
 use crate::token::{Token, UNITS};
 use crate::{MAX_NESTING, MAX_OPERATORS};
 use logos::Logos;
@@ -21,6 +22,8 @@ pub(crate) struct Lexer<'s, 'k> {
     before_previous: Token,
     previous: Token,
     previous_end: usize,
+    /// Whether the text has ended with blocks open.
+    has_ended: bool,
 }
 
 impl<'s, 'k> Lexer<'s, 'k> {
@@ -32,7 +35,8 @@ impl<'s, 'k> Lexer<'s, 'k> {
         }
         let nesting = Nesting::default();
         let (before_previous, previous) = (Token::Semicolon, Token::Semicolon);
-        Self { source, tokens, sink, nesting, before_previous, previous, previous_end: 0 }
+        let (previous_end, has_ended) = (0, false);
+        Self { source, tokens, sink, nesting, before_previous, previous, previous_end, has_ended }
     }
 
     /// The next token as the grammar knows it; none where what was read is left out.
@@ -235,6 +239,21 @@ impl<'s, 'k> Lexer<'s, 'k> {
         );
     }
 
+    /// The text has ended: a brace for each that is still open, so that what was read in the block
+    /// is kept. Reported once.
+    fn missing_brace(&mut self) -> Option<(u32, Token, u32)> {
+        if !self.nesting.close_block() {
+            return None;
+        }
+        let end = self.source.len() as u32;
+        if !std::mem::replace(&mut self.has_ended, true)
+            && let Some(diagnostic) = Surroundings::new(self.source).unclosed_at(end)
+        {
+            self.sink.ends_early(diagnostic, end);
+        }
+        Some((end, Token::CloseBrace, end))
+    }
+
     fn span(&self) -> Span {
         let range = self.tokens.span();
         Span::new(range.start as u32, range.end as u32)
@@ -263,7 +282,7 @@ impl Iterator for Lexer<'_, '_> {
             if self.sink.is_full() {
                 return Some(Err(Stopped));
             }
-            let raw = self.tokens.next()?;
+            let Some(raw) = self.tokens.next() else { return self.missing_brace().map(Ok) };
             let Some(token) = self.refine(raw) else { continue };
             match self.nesting.observe(token) {
                 Ok(()) => {}

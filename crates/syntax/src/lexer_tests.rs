@@ -104,7 +104,10 @@ fn foreign_characters_are_reported_and_replaced() {
 fn a_text_that_is_not_closed_ends_with_the_line_or_before_a_brace() {
     let code = Code::UnterminatedString;
     assert_eq!(lex("\"a b\nc"), (vec![(Text, "\"a b"), (Name, "c")], vec![code]));
-    assert_eq!(lex("\"a {"), (vec![(Text, "\"a "), (OpenBrace, "{")], vec![code]));
+    assert_eq!(
+        lex("\"a {}"),
+        (vec![(Text, "\"a "), (OpenBrace, "{"), (CloseBrace, "}")], vec![code])
+    );
     assert_eq!(tokens("\"a { b\""), [Text]);
 }
 

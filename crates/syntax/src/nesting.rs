@@ -39,6 +39,13 @@ impl Nesting {
         self.open.last().is_some_and(|open| open.closing != Token::CloseBrace)
     }
 
+    /// The text ends: gives up brackets of expressions, and closes the innermost block if one is
+    /// open. Whether one was.
+    pub(crate) fn close_block(&mut self) -> bool {
+        self.give_up_brackets();
+        self.open.pop().is_some()
+    }
+
     /// Takes note of the next token.
     pub(crate) fn observe(&mut self, token: Token) -> Result<(), Refusal> {
         let after_else = std::mem::replace(&mut self.after_else, token == Token::Else);

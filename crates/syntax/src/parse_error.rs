@@ -11,6 +11,9 @@ use crate::surroundings::Surroundings;
 use crate::token::{FREE_WORDS, Token};
 use crate::tree;
 
+/// The words for a direction that could be taken for the name of a distance.
+const DIRECTIONS: [&str; 7] = ["forward", "backward", "backwards", "left", "right", "up", "down"];
+
 /// All diagnostics of a text by place: those that have been worded, and those of syntax errors.
 pub(crate) fn explain(
     source: &str,
@@ -27,8 +30,8 @@ pub(crate) fn explain(
             };
             diagnostics.push(mistake.explain());
         }
-        blame_one_brace(&mut diagnostics);
     }
+    blame_one_brace(&mut diagnostics);
     diagnostics.sort_by_key(|diagnostic| diagnostic.primary.span);
     if diagnostics.len() >= MAX_MISTAKES
         && let Some(last) = diagnostics.last_mut()
@@ -90,15 +93,11 @@ impl Mistake<'_> {
     }
 
     fn at_end(&self) -> Diagnostic {
-        let expected = self.expectation.describe();
-        let Some(opening) = self.surroundings.likely_unclosed() else {
+        self.surroundings.unclosed_at(self.error.span.end).unwrap_or_else(|| {
+            let expected = self.expectation.describe();
             let message = format!("the file ends where {expected} was expected");
-            return self.error(Code::UnexpectedToken, message, format!("expected {expected}"));
-        };
-        let sign = self.surroundings.text(opening);
-        let message = format!("this `{sign}` is not closed");
-        Diagnostic::error(Code::UnclosedBracket, opening, message, "opened here")
-            .with_label(self.error.span, "the file ends here")
+            self.error(Code::UnexpectedToken, message, format!("expected {expected}"))
+        })
     }
 
     /// A bracket in an expression that is still open where the expression clearly is over.
@@ -239,6 +238,12 @@ impl Mistake<'_> {
         if begins_statement && found == Token::Name && next == Some(Token::OpenParenthesis) {
             return Some(format!("to call an action write `call {}(..)`", shortened(text)));
         }
+        if begins_statement
+            && found == Token::Name
+            && let Some(statement) = self.statement_with(text)
+        {
+            return Some(format!("write `{statement}`"));
+        }
         if found.is_word()
             && let Some(meant) = nearest(text, self.expectation.words())
         {
@@ -250,18 +255,39 @@ impl Mistake<'_> {
         if wants_direction && found == Token::Plus {
             return Some("put a sum in parentheses: `move (a + b) up`".to_owned());
         }
-        if wants_direction && self.is_after_name_of_move() {
-            return Some("to go to a position write `move to NAME`".to_owned());
-        }
-        None
+        let name = self.name_after_move().filter(|_| wants_direction)?;
+        let is_length = matches!(found, Token::Integer | Token::Real | Token::Quantity);
+        Some(match name {
+            _ if is_length => {
+                format!("the distance comes first: `move {} {name}`", shortened(text))
+            }
+            _ if DIRECTIONS.contains(&name) => {
+                format!("say how far before the direction: `move 20 mm {name}`")
+            }
+            _ => format!("to go to a position write `move to {}`", shortened(name)),
+        })
     }
 
-    /// `move start`: what was meant is `move to start`.
-    fn is_after_name_of_move(&self) -> bool {
-        let before = self.surroundings.before(self.error.span.start);
-        let Some(name) = before.filter(|token| token.token.is_word()) else { return false };
-        let verb = self.surroundings.before(name.span.start);
-        verb.is_some_and(|token| token.token == Token::Move)
+    /// What a declared name is used by, where it stands alone as a statement.
+    fn statement_with(&self, name: &str) -> Option<String> {
+        let verb = match self.surroundings.declared_by(name)? {
+            Token::Io => "io",
+            Token::Sequence | Token::Action => "call",
+            // Of `advanced move NAME`: at the top of a file no other `move` stands.
+            Token::Move => "advance",
+            Token::Error => "throw",
+            Token::Joints => "move to",
+            _ => return None,
+        };
+        Some(format!("{verb} {name}"))
+    }
+
+    /// The word that stands where `move` has its distance: `start` of `move start`.
+    fn name_after_move(&self) -> Option<&str> {
+        let name = self.surroundings.before(self.error.span.start)?;
+        let verb = self.surroundings.before(name.span.start)?;
+        let is_name = name.token.is_word() && verb.token == Token::Move;
+        is_name.then(|| self.surroundings.text(name.span))
     }
 }
 

@@ -78,6 +78,14 @@ impl<'s> Sink<'s> {
         }
     }
 
+    /// A mistake that reaches to the end of the text: of grammar nothing more is said there.
+    pub(crate) fn ends_early(&self, diagnostic: Diagnostic, end: u32) {
+        if self.aftermath.get().is_none() {
+            self.report(diagnostic);
+        }
+        self.unsettle(end);
+    }
+
     /// A token that the parser could not take, and the tokens it left out in order to go on at
     /// `end`, after which comes `rest`.
     pub(crate) fn recovered(&self, recovery: Recovery, end: u32, rest: &str) {

@@ -1,6 +1,8 @@
 //! The tokens of a text that has a mistake, read again: what stands around a place, and which
 //! bracket is open there. It knows no grammar.
 
+use crate::codes::Code;
+use crate::diagnostic::Diagnostic;
 use crate::span::Span;
 use crate::token::Token;
 use logos::Logos;
@@ -51,6 +53,24 @@ impl<'s> Surroundings<'s> {
         self.tokens.get(first..first + 2)?.try_into().ok()
     }
 
+    /// The words of the declaration that gives a name, if one at the top of the text does.
+    pub(crate) fn declared_by(&self, name: &str) -> Option<Token> {
+        let mut open = Vec::new();
+        let mut before = None;
+        for token in &self.tokens {
+            if open.is_empty()
+                && token.token.is_word()
+                && self.text(token.span) == name
+                && before.is_some()
+            {
+                return before;
+            }
+            follow(&mut open, *token);
+            before = Some(token.token);
+        }
+        None
+    }
+
     /// Whether nothing but blanks stands before an offset on its line.
     pub(crate) fn begins_line(&self, offset: u32) -> bool {
         self.indentation(offset).len() as u32 == offset - self.line_start(offset)
@@ -86,6 +106,14 @@ impl<'s> Surroundings<'s> {
         }
         let innermost = open.last()?.span;
         Some(suspect.unwrap_or(innermost))
+    }
+
+    /// What is said of the bracket that probably lacks its closing one, at the end of the text.
+    pub(crate) fn unclosed_at(&self, end: u32) -> Option<Diagnostic> {
+        let opening = self.likely_unclosed()?;
+        let message = format!("this `{}` is not closed", self.text(opening));
+        let diagnostic = Diagnostic::error(Code::UnclosedBracket, opening, message, "opened here");
+        Some(diagnostic.with_label(Span::new(end, end), "the file ends here"))
     }
 
     fn until(&self, offset: u32) -> &[Placed] {

@@ -123,7 +123,7 @@ fn habits_from_other_languages_are_named() {
         ("if a break", "E0017", "break", "put the statements into braces: `{ .. }`"),
         ("while a b = 3", "E0017", "b", "put the statements into braces: `{ .. }`"),
         ("pick(peg)", "E0010", "pick", "to call an action write `call pick(..)`"),
-        ("move start", "E0010", "}", "to go to a position write `move to NAME`"),
+        ("move start", "E0010", "}", "to go to a position write `move to start`"),
         ("move 1 mm + b up", "E0010", "+", "put a sum in parentheses: `move (a + b) up`"),
     ];
     for (source, code, marked, help) in cases {
@@ -301,4 +301,45 @@ fn the_twentieth_mistake_is_the_last() {
 fn a_text_that_is_too_large_is_refused_unread() {
     let source = " ".repeat(MAX_SOURCE_BYTES + 1);
     assert_eq!(mistake(&source).code, Code::SourceTooLarge);
+}
+
+#[test]
+fn what_a_bare_name_is_used_by_is_said() {
+    let declarations = "io grip { set 0 high }\nadvanced move probe { distance 1 mm up }\n\
+                        error jam { }\nsequence part { break }\naction pick { break }\n\
+                        joints home = [1] deg\n";
+    let cases = [
+        ("grip", "io grip"),
+        ("part", "call part"),
+        ("pick", "call pick"),
+        ("probe", "advance probe"),
+        ("jam", "throw jam"),
+        ("home", "move to home"),
+    ];
+    for (name, statement) in cases {
+        let found = mistake(&format!("{declarations}sequence main {{\n  {name}\n  break\n}}"));
+        assert_eq!(found.help, Some(format!("write `{statement}`")), "{name}");
+    }
+}
+
+#[test]
+fn a_move_with_its_words_in_another_order_is_put_right() {
+    let cases = [
+        ("move up 20 mm", "the distance comes first: `move 20 mm up`"),
+        ("move up", "say how far before the direction: `move 20 mm up`"),
+        ("move home", "to go to a position write `move to home`"),
+    ];
+    for (source, help) in cases {
+        assert_eq!(in_sequence(source).0.help.as_deref(), Some(help), "{source}");
+    }
+}
+
+#[test]
+fn what_was_read_in_a_block_that_is_not_closed_is_kept() {
+    let source = "sequence main {\n  wait 1 s\n  if true {\n    break\n    move to";
+    let parsed = parse(source);
+    let codes: Vec<Code> = parsed.diagnostics.iter().map(|one| one.code).collect();
+    assert_eq!(codes, [Code::UnclosedBracket], "{:#?}", parsed.diagnostics);
+    let [Item::Sequence(main)] = &parsed.program.items[..] else { panic!("one sequence") };
+    assert_eq!(main.body.statements.len(), 2, "{main:#?}");
 }

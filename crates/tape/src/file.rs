@@ -52,8 +52,6 @@ pub struct Snapshot {
     /// The act that was begun and not finished: whether it was going in reverse, and the level that
     /// a toggled output had before.
     pub pending: Option<(bool, Option<bool>)>,
-    /// How many blocks with a reverse of their own are open.
-    pub open_blocks: u32,
     /// Where the joints were, in radians.
     pub joints: [f64; 6],
     /// The levels of the outputs.

@@ -59,7 +59,7 @@ pub struct Tape {
     pub(crate) joints: Stream<[f64; 6]>,
     /// What has been recorded and dropped, in bits.
     dropped_bits: u64,
-    /// The most full chunks of words and bits that may be held.
+    /// The most full chunks that may be held, each as large as one of words.
     limit_chunks: usize,
 }
 
@@ -90,7 +90,8 @@ impl Recorder for Tape {
 
     #[inline(always)]
     fn is_full(&self) -> bool {
-        self.words.full_chunks() + self.bits.full_chunks() > self.limit_chunks
+        let joints = self.joints.full_chunks() * size_of::<[f64; 6]>() / size_of::<u64>();
+        self.words.full_chunks() + self.bits.full_chunks() + joints > self.limit_chunks
     }
 }
 

@@ -1,7 +1,8 @@
 //! The laws of compiler and machine together, held against the reference interpreter. Each is a
 //! function of randomness: the same function is a property test and a fuzz target.
 //!
-//! A law panics where it does not hold, with the program and what is different.
+//! A law panics where it does not hold, with the program and what is different, and else says
+//! whether there was anything to compare.
 
 use crate::logged::Logged;
 use crate::programs::{self, Options};
@@ -25,10 +26,10 @@ const MAX_CALLS: usize = 128;
 ///
 /// # Errors
 /// Those of the randomness.
-pub fn compiles(u: &mut Unstructured<'_>) -> Result<()> {
+pub fn compiles(u: &mut Unstructured<'_>) -> Result<bool> {
     let source = programs::generate(u, Options::default())?;
     Case::new(&source);
-    Ok(())
+    Ok(true)
 }
 
 /// A run comes to the same in the machine and in the reference interpreter: the same commands in
@@ -36,16 +37,15 @@ pub fn compiles(u: &mut Unstructured<'_>) -> Result<()> {
 ///
 /// # Errors
 /// Those of the randomness.
-pub fn agrees_forward(u: &mut Unstructured<'_>) -> Result<()> {
+pub fn agrees_forward(u: &mut Unstructured<'_>) -> Result<bool> {
     let source = programs::generate(u, Options::default())?;
-    agrees_forward_on(&source, u.arbitrary()?);
-    Ok(())
+    Ok(agrees_forward_on(&source, u.arbitrary()?))
 }
 
 /// The same for a given program, in a workcell that follows from a seed.
-pub fn agrees_forward_on(source: &str, seed: u64) {
+pub fn agrees_forward_on(source: &str, seed: u64) -> bool {
     let case = Case::new(source);
-    let Some((expected, expected_cell)) = case.reference(seed) else { return };
+    let Some((expected, expected_cell)) = case.reference(seed) else { return false };
     let mut cell = Logged::new(seed);
     let mut machine = case.machine(&cell);
     let stop = loop {
@@ -58,6 +58,7 @@ pub fn agrees_forward_on(source: &str, seed: u64) {
     case.require(same_end, || format!("it ended otherwise: {:?}, {stop:?}", expected.ending));
     case.same("the command", "", &cell.log, &expected_cell.log);
     case.compare("at the end", &expected.last, &machine, &cell);
+    true
 }
 
 /// Step by step, forward and in reverse, the machine is at the beginning of every statement in the
@@ -66,17 +67,16 @@ pub fn agrees_forward_on(source: &str, seed: u64) {
 ///
 /// # Errors
 /// Those of the randomness.
-pub fn agrees_backward(u: &mut Unstructured<'_>) -> Result<()> {
+pub fn agrees_backward(u: &mut Unstructured<'_>) -> Result<bool> {
     let source = programs::generate(u, Options { allow_overrides: false, ..Options::default() })?;
-    agrees_backward_on(&source, u.arbitrary()?);
-    Ok(())
+    Ok(agrees_backward_on(&source, u.arbitrary()?))
 }
 
 /// The same for a given program without blocks that are skipped or replaced in reverse, in a
 /// workcell that follows from a seed.
-pub fn agrees_backward_on(source: &str, seed: u64) {
+pub fn agrees_backward_on(source: &str, seed: u64) -> bool {
     let case = Case::new(source);
-    let Some((expected, _)) = case.reference(seed) else { return };
+    let Some((expected, _)) = case.reference(seed) else { return false };
     let starts = case.starts(&expected.history);
     let history: Vec<&StateCopy> =
         expected.history.iter().filter(|copy| starts.contains_key(&copy.span.start)).collect();
@@ -93,6 +93,7 @@ pub fn agrees_backward_on(source: &str, seed: u64) {
     case.same("the end", "of a run", &machine.mark(), &end);
     case.same("the commands", "of a run", &cell.log, &end_cell.log);
     walk.reverse_to_marks(&mut machine, &mut cell);
+    !walk.history.is_empty()
 }
 
 /// A program and what became of it.

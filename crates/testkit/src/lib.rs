@@ -3,7 +3,9 @@
 //!
 //! A dev-dependency only: nothing that ships links it.
 
+pub mod altered;
 pub mod code;
+pub mod hostile;
 pub mod laws;
 pub mod ledger;
 pub mod logged;

@@ -1,8 +1,9 @@
 //! The laws of the machine, each a function of randomness: the same function is a property test and
 //! a fuzz target.
 //!
-//! A law panics where it does not hold, with what is needed to see why. In a deterministic workcell
-//! all of them compare bit for bit.
+//! A law panics where it does not hold, with what is needed to see why, and else says whether there
+//! was anything to compare. In a deterministic workcell all of them compare bit for bit. Its errors
+//! are those of the randomness.
 
 use crate::Ledger;
 use crate::code::{self, Options};
@@ -15,6 +16,8 @@ use obverse_workcell::Safety;
 
 /// The longest run that a law steps through, in instructions.
 const MAX_STEPS: usize = 3_000;
+/// How often a law turns round within what replaces a block.
+const MAX_TURNS: u32 = 5;
 
 fn program(u: &mut Unstructured<'_>, options: Options) -> Result<Verified> {
     let module = code::module(u, options)?;
@@ -56,7 +59,7 @@ fn step(machine: &mut Machine<'_>, direction: Direction, cell: &mut Ledger) -> b
 }
 
 /// Each step in reverse undoes one step forward, and forward again leads the same way.
-pub fn there_and_back(u: &mut Unstructured<'_>) -> Result<()> {
+pub fn there_and_back(u: &mut Unstructured<'_>) -> Result<bool> {
     let program = program(u, Options::default())?;
     let mut cell = Ledger::new(u.arbitrary()?);
     let mut machine = machine(&program, &cell);
@@ -73,12 +76,12 @@ pub fn there_and_back(u: &mut Unstructured<'_>) -> Result<()> {
         assert!(step(&mut machine, Direction::Forward, &mut cell));
         assert_eq!(picture(&machine, &cell), *after, "forward again");
     }
-    Ok(())
+    Ok(true)
 }
 
 /// A run all the way is the same as all its steps, in both directions, and a mark can be gone back
 /// to.
-pub fn runs_are_steps(u: &mut Unstructured<'_>) -> Result<()> {
+pub fn runs_are_steps(u: &mut Unstructured<'_>) -> Result<bool> {
     let program = program(u, Options::default())?;
     let seed = u.arbitrary()?;
     let (mut cell, mut stepped_cell) = (Ledger::new(seed), Ledger::new(seed));
@@ -91,7 +94,7 @@ pub fn runs_are_steps(u: &mut Unstructured<'_>) -> Result<()> {
         }
     }
     if marks.len() >= MAX_STEPS {
-        return Ok(());
+        return Ok(false);
     }
     let mut machine = machine(&program, &cell);
     assert_eq!(run(&mut machine, Direction::Forward, &mut cell), Stop::Finished);
@@ -102,11 +105,11 @@ pub fn runs_are_steps(u: &mut Unstructured<'_>) -> Result<()> {
     }
     assert_eq!(run(&mut machine, Direction::Reverse, &mut cell), Stop::AtStart);
     assert_eq!(picture(&machine, &cell), start, "back at the start");
-    Ok(())
+    Ok(true)
 }
 
 /// What a step leaves on the tape is what the class of its instruction says, and nothing else.
-pub fn parsimony(u: &mut Unstructured<'_>) -> Result<()> {
+pub fn parsimony(u: &mut Unstructured<'_>) -> Result<bool> {
     let program = program(u, Options::default())?;
     let module = program.module();
     let mut cell = Ledger::new(u.arbitrary()?);
@@ -130,7 +133,7 @@ pub fn parsimony(u: &mut Unstructured<'_>) -> Result<()> {
         let commanded = machine.commands() > commands;
         assert_eq!(commanded, instr.info().family.commands_workcell(), "{instr:?}");
     }
-    Ok(())
+    Ok(true)
 }
 
 fn expected_bits(module: &Module, state: &obverse_vm::State, instr: &Instr) -> u64 {
@@ -154,7 +157,7 @@ fn expected_bits(module: &Module, state: &obverse_vm::State, instr: &Instr) -> u
 
 /// With a stop in the midst of any act, going back leads to the start and going on to the same end.
 /// The same for a stop in the midst of going back.
-pub fn write_ahead(u: &mut Unstructured<'_>) -> Result<()> {
+pub fn write_ahead(u: &mut Unstructured<'_>) -> Result<bool> {
     let program = program(u, Options::default())?;
     let seed = u.arbitrary()?;
     let mut cell = Ledger::new(seed);
@@ -164,7 +167,7 @@ pub fn write_ahead(u: &mut Unstructured<'_>) -> Result<()> {
     let end = picture(&whole, &cell);
     let acts = cell.acts;
     if acts == 0 {
-        return Ok(());
+        return Ok(false);
     }
     let at = u.int_in_range(0..=acts - 1)?;
     let fraction = f64::from(u.int_in_range(0..=10_u8)?) / 10.0;
@@ -192,7 +195,7 @@ fn stop_while_going_back(
     seed: u64,
     start: (u64, Place),
     end: (u64, Place),
-) -> Result<()> {
+) -> Result<bool> {
     for goes_on in [Direction::Reverse, Direction::Forward] {
         let mut cell = Ledger::new(seed);
         let mut machine = machine(program, &cell);
@@ -203,7 +206,7 @@ fn stop_while_going_back(
         assert_eq!(run(&mut probe, Direction::Reverse, &mut trial), Stop::AtStart);
         let back_acts = trial.acts - there;
         if back_acts == 0 {
-            return Ok(());
+            return Ok(false);
         }
         let at = there + u.int_in_range(0..=back_acts - 1)?;
         cell.stop_at = Some((at, f64::from(u.int_in_range(0..=10_u8)?) / 10.0));
@@ -219,7 +222,7 @@ fn stop_while_going_back(
             }
         }
     }
-    Ok(())
+    Ok(true)
 }
 
 fn stop_in_the_midst(machine: &mut Machine<'_>, direction: Direction, cell: &mut Ledger) {
@@ -232,7 +235,7 @@ fn stop_in_the_midst(machine: &mut Machine<'_>, direction: Direction, cell: &mut
 
 /// Going back stops at the newest never-instruction, names it, and has changed nothing; what was
 /// before it is off the tape.
-pub fn barrier(u: &mut Unstructured<'_>) -> Result<()> {
+pub fn barrier(u: &mut Unstructured<'_>) -> Result<bool> {
     let program = program(u, Options { never: true, blocks: false })?;
     let module = program.module();
     let mut cell = Ledger::new(u.arbitrary()?);
@@ -252,20 +255,20 @@ pub fn barrier(u: &mut Unstructured<'_>) -> Result<()> {
     let stop = run(&mut machine, Direction::Reverse, &mut cell);
     let Some((pc, then)) = behind_never else {
         assert_eq!(stop, Stop::AtStart);
-        return Ok(());
+        return Ok(false);
     };
     for _ in 0..2 {
         let stop = run(&mut machine, Direction::Reverse, &mut cell);
         assert!(matches!(stop, Stop::Refused(refusal) if refusal.pc == pc), "{stop:?}");
         assert_eq!(picture(&machine, &cell), then, "nothing changed");
     }
-    Ok(())
+    Ok(true)
 }
 
 /// With blocks that are skipped or replaced in reverse, going back from anywhere still restores all
 /// of the program's own state, bit for bit, and empties the tape: what is left as it is are the
 /// joints and the outputs.
-pub fn blocks(u: &mut Unstructured<'_>) -> Result<()> {
+pub fn blocks(u: &mut Unstructured<'_>) -> Result<bool> {
     let program = program(u, Options { never: false, blocks: true })?;
     let mut cell = Ledger::new(u.arbitrary()?);
     let mut machine = machine(&program, &cell);
@@ -277,11 +280,98 @@ pub fn blocks(u: &mut Unstructured<'_>) -> Result<()> {
     }
     assert_eq!(run(&mut machine, Direction::Reverse, &mut cell), Stop::AtStart);
     assert_eq!(picture(&machine, &uncommanded), start);
-    Ok(())
+    Ok(true)
+}
+
+/// The same with a stop in the midst of any act, going forward or back, also within what replaces a
+/// block; and going on forward from a stop on the way back, and only then back.
+pub fn write_ahead_with_blocks(u: &mut Unstructured<'_>) -> Result<bool> {
+    let program = program(u, Options { never: false, blocks: true })?;
+    let seed = u.arbitrary()?;
+    let uncommanded = Ledger::new(seed);
+    let mut cell = uncommanded.clone();
+    let mut whole = machine(&program, &cell);
+    let start = picture(&whole, &uncommanded);
+    assert_eq!(run(&mut whole, Direction::Forward, &mut cell), Stop::Finished);
+    let there = cell.acts;
+    assert_eq!(run(&mut whole, Direction::Reverse, &mut cell), Stop::AtStart);
+    assert_eq!(picture(&whole, &uncommanded), start, "without a stop");
+    if cell.acts == 0 {
+        return Ok(false);
+    }
+    let at = u.int_in_range(0..=cell.acts - 1)?;
+    let fraction = f64::from(u.int_in_range(0..=10_u8)?) / 10.0;
+    for goes_on in [Direction::Forward, Direction::Reverse] {
+        let mut cell = uncommanded.clone().stopping_at(at, fraction);
+        let mut machine = machine(&program, &cell);
+        if at >= there {
+            assert_eq!(run(&mut machine, Direction::Forward, &mut cell), Stop::Finished);
+            stop_in_the_midst(&mut machine, Direction::Reverse, &mut cell);
+        } else {
+            stop_in_the_midst(&mut machine, Direction::Forward, &mut cell);
+        }
+        if goes_on == Direction::Forward {
+            assert_eq!(run(&mut machine, Direction::Forward, &mut cell), Stop::Finished);
+        }
+        assert_eq!(run(&mut machine, Direction::Reverse, &mut cell), Stop::AtStart);
+        let back = picture(&machine, &uncommanded);
+        assert_eq!(back, start, "stopped in act {at} of {there}, on {goes_on:?}");
+    }
+    Ok(true)
+}
+
+/// Going back by steps is going back by a run, with blocks too; and turning round within what
+/// replaces a block leads out of it to where it was entered, as if it had not been.
+pub fn turns(u: &mut Unstructured<'_>) -> Result<bool> {
+    let program = program(u, Options { never: false, blocks: true })?;
+    let uncommanded = Ledger::new(u.arbitrary()?);
+    let (mut cell, mut run_cell) = (uncommanded.clone(), uncommanded.clone());
+    let (mut machine, mut at_a_run) = (machine(&program, &cell), machine(&program, &cell));
+    let start = picture(&machine, &uncommanded);
+    for _ in 0..u.int_in_range(0..=400)? {
+        if !step(&mut machine, Direction::Forward, &mut cell) {
+            break;
+        }
+        step(&mut at_a_run, Direction::Forward, &mut run_cell);
+    }
+    assert_eq!(run(&mut at_a_run, Direction::Reverse, &mut run_cell), Stop::AtStart);
+    let mut turned = 0;
+    let mut before = picture(&machine, &uncommanded);
+    while step(&mut machine, Direction::Reverse, &mut cell) {
+        if machine.state().is_compensating() && turned < MAX_TURNS {
+            turned += 1;
+            let mut trial = cell.clone();
+            let steps = u.int_in_range(0..=30_u32)?;
+            if turn(&mut machine, steps, &mut trial) {
+                assert_eq!(picture(&machine, &uncommanded), before, "turned after {steps} steps");
+            }
+        }
+        before = picture(&machine, &uncommanded);
+    }
+    assert_eq!(picture(&machine, &uncommanded), start, "by steps");
+    if turned == 0 {
+        assert_eq!(picture(&machine, &cell), picture(&at_a_run, &run_cell), "as at a run");
+    }
+    Ok(turned > 0)
+}
+
+/// So many steps further within what replaces a block, and forward out of it again; whether it did
+/// not come to its end.
+fn turn(machine: &mut Machine<'_>, steps: u32, cell: &mut Ledger) -> bool {
+    for _ in 0..steps {
+        let goes_on = step(machine, Direction::Reverse, cell);
+        if !goes_on || !machine.state().is_compensating() {
+            return false;
+        }
+    }
+    while machine.state().is_compensating() {
+        assert!(step(machine, Direction::Forward, cell), "there is a way out");
+    }
+    true
 }
 
 /// A module and its bytes say the same, and so do a recording and its bytes.
-pub fn round_trips(u: &mut Unstructured<'_>) -> Result<()> {
+pub fn round_trips(u: &mut Unstructured<'_>) -> Result<bool> {
     let program = program(u, Options { never: true, blocks: true })?;
     let module = program.module();
     let bytes = match encode(module) {
@@ -307,7 +397,7 @@ pub fn round_trips(u: &mut Unstructured<'_>) -> Result<()> {
     };
     assert_eq!(again.digest(&cell), machine.digest(&cell));
     assert_eq!(again.streams(), streams);
-    Ok(())
+    Ok(true)
 }
 
 /// A count of the opcodes of a random module, to see that all of them occur.

@@ -66,10 +66,9 @@ fn trap(at: usize, failure: Failure) -> Exit {
 macro_rules! borrow {
     ($values:ident) => {
         Values {
-            operands: &mut *$values.operands,
+            words: &mut *$values.words,
             top: $values.top,
             depth: $values.depth,
-            slots: &mut *$values.slots,
             globals: &mut *$values.globals,
             fixed: $values.fixed,
         }
@@ -237,7 +236,7 @@ pub(crate) fn forward<R: Recorder, const ONE: bool>(
 ///
 /// # Errors
 /// A trap, with the instruction that made it.
-#[inline(never)]
+#[inline(always)]
 pub(crate) fn evaluate(
     code: &[Instr],
     start: usize,
@@ -329,27 +328,13 @@ impl Reverse<'_, '_> {
     }
 }
 
-/// Forward once more, within reverse: one opcode of a prefix.
-macro_rules! rerun_arm {
-    ($op:expr, $run:ident, $at:ident, $failed:ident, value) => {
-        if let Err(kind) = $op.run(&mut $run.values) {
-            $failed = Some(Exit::Trap($at, kind));
-            break;
-        }
-    };
-    ($op:expr, $run:ident, $at:ident, $failed:ident, $other:ident) => {{
-        let _ = $op;
-        break;
-    }};
-}
-
 /// Reverse: one opcode, by family and class. `$at` is the instruction, `$prefix` its prefix. What
 /// needs its operands leaves by `$operands`, to come back with them.
 macro_rules! reverse_arm {
     ($op:expr, $run:ident, $instr:ident, $at:ident, $prefix:expr, $operands:lifetime $out:lifetime
         variable always) => {{
         if $prefix > 0 {
-            break $operands $at;
+            break $operands ($at, $prefix);
         }
         if let Err(failure) = $op.reverse(&mut Variables(&mut $run.values)) {
             break $out trap($at, failure);
@@ -369,7 +354,7 @@ macro_rules! reverse_arm {
     ($op:expr, $run:ident, $instr:ident, $at:ident, $prefix:expr, $operands:lifetime $out:lifetime
         flow always) => {{
         if matches!($instr, Instr::JoinAssert { .. }) {
-            break $operands $at;
+            break $operands ($at, $prefix);
         }
         let mut variables = Variables(&mut $run.values);
         let mut course = Course { variables: &mut variables, way: Way::Beside };
@@ -399,29 +384,48 @@ macro_rules! reverse_arm {
     }};
 }
 
-/// Reverse, with the operands there: the updates, and asserted joins.
+/// Reverse, with the operands there: one opcode, by family and class.
 macro_rules! with_operands_arm {
-    ($op:expr, $run:ident, $instr:ident, $at:ident, $prefix:expr, $out:lifetime
-        variable always) => {{
-        if let Err(failure) = $op.reverse(&mut Variables(&mut $run.values)) {
-            break $out trap($at, failure);
-        }
-        $run.place.pc = $at - $prefix;
-    }};
-    ($op:expr, $run:ident, $instr:ident, $at:ident, $prefix:expr, $out:lifetime
-        flow always) => {{
-        let mut variables = Variables(&mut $run.values);
+    ($op:expr, $values:ident, variable always) => {
+        $op.reverse(&mut Variables(&mut $values)).map(|()| Way::Beside)
+    };
+    ($op:expr, $values:ident, flow always) => {{
+        let mut variables = Variables(&mut $values);
         let mut course = Course { variables: &mut variables, way: Way::Beside };
-        if let Err(failure) = $op.reverse(&mut course) {
-            break $out trap($at, failure);
-        }
-        let way = course.way;
-        retrace!($run, $instr, $at, $prefix, way, $out);
+        $op.reverse(&mut course).map(|()| course.way)
     }};
-    ($op:expr, $run:ident, $instr:ident, $at:ident, $prefix:expr, $out:lifetime $($other:tt)*) => {{
+    ($op:expr, $values:ident, $($other:tt)*) => {{
         let _ = $op;
-        break $out Exit::Slow;
+        Ok(Way::Beside)
     }};
+}
+
+/// Reverse an effect whose inverse needs its operands: run its prefix forward once more, then undo
+/// it. Of its own, so that the loop's values stay in registers.
+#[inline(never)]
+fn reverse_with_operands(
+    code: &[Instr],
+    mut values: Values<'_>,
+    effect: usize,
+    prefix: usize,
+) -> Result<Way, Exit> {
+    values.depth = 0;
+    let ran = evaluate(code, effect - prefix, effect, &mut values);
+    ran.map_err(|(at, kind)| Exit::Trap(at, kind))?;
+    macro_rules! dispatch {
+        ($(
+            $(#[doc = $doc:literal])+
+            $code:literal $ident:ident $mnemonic:literal ($($field:ident: $ty:ty),*)
+            [$($picture:tt)*] $class:ident $(($payload:tt))? $family:ident;
+        )*) => {
+            match code[effect] {
+                $(Instr::$ident { $($field,)* } => with_operands_arm!(
+                    op::$ident { $($field,)* }, values, $family $class $($payload)?
+                ),)*
+            }
+        };
+    }
+    for_each_op!(dispatch).map_err(|failure| trap(effect, failure))
 }
 
 /// Go back where a flow opcode said. A jump is undone in the same step as its landing.
@@ -480,30 +484,17 @@ pub(crate) fn reverse<const ONE: bool>(
                         break 'out Exit::Bound;
                     }
                 };
-                let instr = run.code[effect];
-                run.values.depth = 0;
-                let mut failed = None;
-                for at in effect - usize::from(instr.prefix())..effect {
-                    match run.code[at] {
-                        $(Instr::$ident { $($field,)* } => rerun_arm!(
-                            op::$ident { $($field,)* }, run, at, failed, $family
-                        ),)*
+                let (effect, prefix) = effect;
+                let values = &mut run.values;
+                match reverse_with_operands(run.code, borrow!(values), effect, prefix) {
+                    Ok(Way::Beside) => run.place.pc = effect - prefix,
+                    Ok(Way::Named(from)) => {
+                        let join = run.code[effect];
+                        if let Err(exit) = run.undo_jump(join, effect, from) {
+                            break exit;
+                        }
                     }
-                }
-                if let Some(exit) = failed {
-                    break exit;
-                }
-                match instr {
-                    $(Instr::$ident { $($field,)* } => {
-                        with_operands_arm!(
-                            op::$ident { $($field,)* },
-                            run,
-                            instr,
-                            effect,
-                            usize::from(0 $(+ obverse_isa::Operand::as_prefix($field))*),
-                            'out $family $class $($payload)?
-                        );
-                    })*
+                    Err(exit) => break exit,
                 }
                 if ONE {
                     break Exit::One;

@@ -13,7 +13,7 @@ use xxhash_rust::xxh3::Xxh3;
 
 /// A reversible machine. The workcell is lent to it for each run, so that whoever drives the
 /// machine can look at the workcell in between.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub struct Machine<'p> {
     pub(crate) program: &'p Verified,
     pub(crate) constants: Vec<u64>,
@@ -59,12 +59,11 @@ macro_rules! values {
             None => unreachable!("a machine always has the frame of its start"),
         };
         $crate::values::Values {
-            top: state.operands[usize::from(state.depth.wrapping_sub(1))],
-            operands: &mut state.operands,
+            top: frame.words.operands[usize::from(state.depth.wrapping_sub(1))],
+            words: &mut frame.words,
             depth: state.depth,
-            slots: &mut frame.slots,
             globals: &mut state.globals,
-            fixed: $crate::values::Fixed {
+            fixed: &$crate::values::Fixed {
                 constants: &$machine.constants,
                 tools: &$machine.links.tools,
                 settings: state.settings,
@@ -86,7 +85,6 @@ impl<'p> Machine<'p> {
         let settings = links.settings;
         let state = State {
             place: hot::Place { pc: 1, offset: 0 },
-            operands: Box::new([0; 256]),
             depth: 0,
             frames: vec![Frame::new(0, &module.functions[0], 0)],
             globals: vec![0; module.globals.len()],
@@ -132,28 +130,20 @@ impl<'p> Machine<'p> {
         cell: &mut dyn Workcell,
         observer: &mut dyn Observer,
     ) -> Stop {
-        let steps = self.state.steps();
-        let bound = match direction {
-            Direction::Forward => steps.saturating_add(limits.instructions),
-            Direction::Reverse => steps.saturating_sub(limits.instructions),
-        };
+        let allowed = self.executed.saturating_add(limits.instructions);
         let mut host = Host { cell, observer };
         loop {
-            if let Err(stop) = self.burst(direction, bound, &mut host) {
-                return stop;
-            }
-            let steps = self.state.steps();
-            let is_over = match direction {
-                Direction::Forward => steps >= bound,
-                Direction::Reverse => steps <= bound && limits.instructions != u64::MAX,
-            };
-            if is_over && self.state.compensations.is_empty() {
+            if self.executed >= allowed {
                 return Stop::Budget;
+            }
+            let left = allowed - self.executed;
+            if let Err(stop) = self.burst(direction, left, 0, &mut host) {
+                return stop;
             }
         }
     }
 
-    /// Run in reverse until the machine is where the mark was taken.
+    /// Run in reverse until the machine is where the mark was taken, between statements.
     pub fn reverse_to(
         &mut self,
         mark: Mark,
@@ -162,11 +152,11 @@ impl<'p> Machine<'p> {
     ) -> Stop {
         let mut host = Host { cell, observer };
         while self.state.steps() > mark.steps || !self.state.compensations.is_empty() {
-            if let Err(stop) = self.burst(Direction::Reverse, mark.steps, &mut host) {
+            if let Err(stop) = self.burst(Direction::Reverse, u64::MAX, mark.steps, &mut host) {
                 return stop;
             }
         }
-        Stop::AtMark
+        if self.state.steps() == mark.steps { Stop::AtMark } else { Stop::OffMark }
     }
 
     /// One step: forward, an instruction; in reverse, an instruction, with the operands that it
@@ -220,6 +210,7 @@ impl<'p> Machine<'p> {
             self.state.place.pc = before;
             return self.load_operands_up_to(before);
         }
+        let compensations = self.state.compensations.len();
         self.count(|machine| {
             let exit = match machine.state.pending {
                 Some(_) => Exit::Slow,
@@ -231,7 +222,9 @@ impl<'p> Machine<'p> {
                 Exit::One | Exit::Bound => Ok(()),
             }
         })?;
-        self.show_operands()
+        // Out of a compensation the machine stands where it entered it, behind its block.
+        let is_back_out = self.state.compensations.len() < compensations;
+        if is_back_out { Ok(()) } else { self.show_operands() }
     }
 
     /// Between statements, going back by instructions: run the prefix, to stand before the effect.
@@ -258,18 +251,26 @@ impl<'p> Machine<'p> {
         ran.map_err(|(at, kind)| self.trapped(at, kind))
     }
 
-    /// As far as the hot loop goes, and one step more.
-    fn burst(&mut self, direction: Direction, bound: u64, host: &mut Host<'_>) -> Outcome {
-        let is_compensating = !self.state.compensations.is_empty();
+    /// As far as the hot loop goes, and one step more: at most about so many instructions, and in
+    /// reverse not below `floor` steps.
+    fn burst(
+        &mut self,
+        direction: Direction,
+        left: u64,
+        floor: u64,
+        host: &mut Host<'_>,
+    ) -> Outcome {
         let now = self.direction_of(direction);
+        let steps = self.state.steps();
+        let floor = if self.state.compensations.is_empty() { floor } else { 0 };
         self.count(|machine| {
             let exit = match (machine.state.pending, now) {
                 (Some(_), _) => Exit::Slow,
                 (None, Direction::Forward) => {
-                    machine.hot_forward::<false>(if is_compensating { u64::MAX } else { bound })
+                    machine.hot_forward::<false>(steps.saturating_add(left))
                 }
                 (None, Direction::Reverse) => {
-                    machine.hot_reverse::<false>(if is_compensating { 0 } else { bound })
+                    machine.hot_reverse::<false>(floor.max(steps.saturating_sub(left)))
                 }
             };
             match (exit, now) {
@@ -294,9 +295,14 @@ impl<'p> Machine<'p> {
 
     /// Count the instructions that something runs, in either direction.
     fn count(&mut self, run: impl FnOnce(&mut Self) -> Outcome) -> Outcome {
-        let before = self.state.steps();
+        let (steps, compensations) = (self.state.steps(), self.state.compensations.len());
         let outcome = run(self);
-        self.executed = self.executed.saturating_add(self.state.steps().abs_diff(before));
+        // Where a compensation begins or ends, the number of steps takes up another thread.
+        let made = match compensations == self.state.compensations.len() {
+            true => self.state.steps().abs_diff(steps),
+            false => 1,
+        };
+        self.executed = self.executed.saturating_add(made);
         outcome
     }
 

@@ -8,7 +8,7 @@ use obverse_bytecode::{Module, Verified};
 use obverse_geometry::JointConfiguration;
 use obverse_isa::{ErrorId, Instr};
 use obverse_tape::{FrameSnapshot, Snapshot, Streams, Tape, record};
-use obverse_workcell::Workcell;
+use obverse_workcell::{Shadow, Workcell};
 use std::fmt;
 
 /// A snapshot that is of no run of the program.
@@ -27,15 +27,45 @@ impl fmt::Display for SnapshotError {
 impl std::error::Error for SnapshotError {}
 
 impl<'p> Machine<'p> {
-    /// The state as plain data. A function that runs in place of a reversal is not kept: the
-    /// machine is shown where it stood before that.
+    /// The state as plain data. Where a function runs in place of a reversal, it is the program's
+    /// state from before it.
     #[must_use]
     pub fn snapshot(&self, cell: &dyn Workcell) -> Snapshot {
+        self.without_compensations().state_as_data(cell)
+    }
+
+    /// The records of the tape that belong to [`snapshot`](Self::snapshot), as plain data; none
+    /// without a tape.
+    #[must_use]
+    pub fn streams(&self) -> Streams {
+        let machine = self.without_compensations();
+        machine.tape.as_ref().map(Tape::streams).unwrap_or_default()
+    }
+
+    fn without_compensations(&self) -> Self {
+        let mut machine = self.clone();
+        machine.leave_compensations();
+        machine
+    }
+
+    /// Take the program's own state back to where the outermost function that runs in place of a
+    /// reversal was called; the workcell is commanded nothing.
+    fn leave_compensations(&mut self) {
+        let mut nothing = Shadow::new(JointConfiguration::ZERO, Vec::new());
+        while !self.state.compensations.is_empty() {
+            if self.state.pending.is_some_and(|pending| pending.direction == Direction::Reverse) {
+                self.state.pending = None;
+            }
+            if self.unwind(&mut nothing).is_err() {
+                // What a run recorded can be unwound; there is no more to know of another state.
+                self.state.compensations.clear();
+            }
+        }
+    }
+
+    fn state_as_data(&self, cell: &dyn Workcell) -> Snapshot {
         let state = &self.state;
         let module = self.program.module();
-        let outermost = state.compensations.first();
-        let place = outermost.map_or(state.place, |compensation| compensation.place);
-        let frames = outermost.map_or(state.frames.len(), |compensation| compensation.frames - 1);
         let frame = |frame: &Frame| {
             let saved = frame.save(&module.functions[usize::from(frame.function)]);
             FrameSnapshot {
@@ -48,32 +78,18 @@ impl<'p> Machine<'p> {
         let pending =
             |pending: Pending| (pending.direction == Direction::Reverse, pending.level_before);
         Snapshot {
-            pc: place.pc as u32,
-            steps: place.steps(),
-            operands: if outermost.is_some() { Vec::new() } else { state.operands().to_vec() },
-            frames: state.frames[..frames].iter().map(frame).collect(),
+            pc: state.pc(),
+            steps: state.steps(),
+            operands: state.operands().to_vec(),
+            frames: state.frames.iter().map(frame).collect(),
             globals: state.globals.clone(),
             settings: state.settings,
             raised: state.raised.iter().map(|error| error.0).collect(),
             draws: state.draws,
-            open_blocks: state.open_blocks,
-            pending: state.pending.filter(|_| outermost.is_none()).map(pending),
+            pending: state.pending.map(pending),
             joints: cell.joints().0,
             outputs: (0..cell.output_count()).map(|bit| cell.output(bit)).collect(),
         }
-    }
-
-    /// The records of the tape as plain data; none without a tape.
-    #[must_use]
-    pub fn streams(&self) -> Streams {
-        let mut tape = match &self.tape {
-            Some(tape) => tape.clone(),
-            None => return Streams::default(),
-        };
-        if let Some(outermost) = self.state.compensations.first() {
-            tape.cut(outermost.tape);
-        }
-        tape.streams()
     }
 
     /// The machine of a recording. It is there to be looked at and walked back: names are not
@@ -97,13 +113,16 @@ impl<'p> Machine<'p> {
             offset: snapshot.steps.wrapping_sub(u64::from(snapshot.pc)),
         };
         state.depth = snapshot.operands.len() as u8;
-        state.operands[..snapshot.operands.len()].copy_from_slice(&snapshot.operands);
         state.frames = snapshot.frames.iter().map(|frame| restore_frame(module, frame)).collect();
+        if let Some(innermost) = state.frames.last_mut() {
+            let operands = &mut innermost.words.operands[..snapshot.operands.len()];
+            operands.copy_from_slice(&snapshot.operands);
+        }
         state.globals.clone_from(&snapshot.globals);
         state.settings = snapshot.settings;
         state.raised = snapshot.raised.iter().map(|&error| ErrorId(error)).collect();
         state.draws = snapshot.draws;
-        state.open_blocks = snapshot.open_blocks;
+        state.open_blocks = open_blocks(module, snapshot);
         state.pending = snapshot.pending.map(|(is_reverse, level_before)| Pending {
             direction: if is_reverse { Direction::Reverse } else { Direction::Forward },
             level_before,
@@ -116,6 +135,26 @@ impl<'p> Machine<'p> {
         machine.tape = Some(Tape::from_streams(streams));
         Ok(machine)
     }
+}
+
+/// How many blocks with a reverse of their own are open around the calls of a snapshot.
+fn open_blocks(module: &Module, snapshot: &Snapshot) -> u32 {
+    let calls = snapshot.frames.iter().skip(1).map(|frame| frame.return_pc - 1);
+    calls.chain([snapshot.pc]).map(|pc| blocks_around(module, pc)).sum()
+}
+
+/// How many blocks with a reverse of their own are open before an instruction.
+fn blocks_around(module: &Module, pc: u32) -> u32 {
+    let first = module.function_at(pc).map_or(pc, |index| module.functions[index].first);
+    let mut open: u32 = 0;
+    for instr in &module.code[first as usize..pc as usize] {
+        match instr {
+            Instr::BlockBegin {} => open += 1,
+            Instr::BlockSkip { .. } | Instr::BlockReplace { .. } => open = open.saturating_sub(1),
+            _ => {}
+        }
+    }
+    open
 }
 
 fn restore_frame(module: &Module, frame: &FrameSnapshot) -> Frame {

@@ -1,11 +1,10 @@
 //! The state of a machine: all that a program can observe or command, but for the workcell's part.
 
 use crate::hot::Place;
-use crate::values::{Settings, Slots};
+use crate::values::{Settings, Words};
 use obverse_bytecode::Function;
 use obverse_geometry::JointConfiguration;
 use obverse_isa::ErrorId;
-use obverse_tape::Place as TapePlace;
 use obverse_tape::record;
 
 /// The most calls that may be under way.
@@ -38,7 +37,7 @@ pub struct Frame {
     pub function: u16,
     /// Where the caller goes on.
     pub return_pc: u32,
-    pub(crate) slots: Box<Slots>,
+    pub(crate) words: Box<Words>,
     pub(crate) positions: Vec<JointConfiguration>,
 }
 
@@ -58,8 +57,6 @@ pub struct Pending {
 pub(crate) struct Compensation {
     /// How many frames there are while it runs.
     pub(crate) frames: usize,
-    /// The tape when it began.
-    pub(crate) tape: TapePlace,
     /// Where the machine was: behind the `block.replace`.
     pub(crate) place: Place,
 }
@@ -68,7 +65,6 @@ pub(crate) struct Compensation {
 #[derive(Clone, Debug)]
 pub struct State {
     pub(crate) place: Place,
-    pub(crate) operands: Box<Slots>,
     pub(crate) depth: u8,
     pub(crate) frames: Vec<Frame>,
     pub(crate) globals: Vec<u64>,
@@ -86,7 +82,7 @@ impl Frame {
         Self {
             function: index,
             return_pc,
-            slots: Box::new([0; 256]),
+            words: Box::default(),
             positions: vec![JointConfiguration::ZERO; function.slots.len()],
         }
     }
@@ -100,7 +96,7 @@ impl Frame {
     /// What must be saved when the frame dies.
     pub(crate) fn save(&self, function: &Function) -> record::Frame {
         record::Frame {
-            words: Self::used(function).map(|slot| self.slots[slot]).collect(),
+            words: Self::used(function).map(|slot| self.words.slots[slot]).collect(),
             joints: self.positions.clone(),
         }
     }
@@ -114,7 +110,7 @@ impl Frame {
     ) -> Self {
         let mut frame = Self::new(index, function, return_pc);
         for (slot, word) in Self::used(function).zip(saved.words) {
-            frame.slots[slot] = word;
+            frame.words.slots[slot] = word;
         }
         frame.positions = saved.joints;
         frame
@@ -128,7 +124,7 @@ impl Frame {
     /// A local variable.
     #[must_use]
     pub fn local(&self, index: u8) -> u64 {
-        self.slots[usize::from(index)]
+        self.words.slots[usize::from(index)]
     }
 
     /// The positions that it remembers.
@@ -154,7 +150,8 @@ impl State {
     /// The operand stack, bottom first; empty between statements.
     #[must_use]
     pub fn operands(&self) -> &[u64] {
-        &self.operands[..usize::from(self.depth)]
+        let frame = self.frames.last();
+        frame.map_or(&[], |frame| &frame.words.operands[..usize::from(self.depth)])
     }
 
     /// The calls under way, outermost first.
@@ -193,6 +190,12 @@ impl State {
         self.pending
     }
 
+    /// How many blocks with a reverse of their own the machine is in.
+    #[must_use]
+    pub fn open_blocks(&self) -> u32 {
+        self.open_blocks
+    }
+
     /// Whether a function is being run in place of the reversal of a block.
     #[must_use]
     pub fn is_compensating(&self) -> bool {
@@ -207,7 +210,7 @@ impl State {
         for frame in &self.frames {
             sink(u64::from(frame.function) << 32 | u64::from(frame.return_pc));
             let function = &functions[usize::from(frame.function)];
-            Frame::used(function).map(|slot| frame.slots[slot]).for_each(&mut *sink);
+            Frame::used(function).map(|slot| frame.words.slots[slot]).for_each(&mut *sink);
             frame.positions.iter().flat_map(JointConfiguration::bits).for_each(&mut *sink);
         }
         self.globals.iter().copied().for_each(&mut *sink);

@@ -4,13 +4,15 @@
 //! read the record, act, and only then drop it. An act that fails is `pending`, with its record
 //! still on the tape, and can be done again in either direction.
 
-use crate::class::{AfterForward, Always, Failure};
+use crate::class::{AfterForward, Always, Failure, Never};
 use crate::hot::{self, Exit};
 use crate::machine::{Machine, values};
 use crate::ops::acts::Acts;
 use crate::state::{Compensation, Direction, Frame, MAX_FRAMES, Pending};
 use crate::stop::{Refusal, Stop, Trap, TrapKind};
-use obverse_isa::{Class, FunctionId, Instr, ReasonId, for_each_op, op};
+use obverse_isa::{
+    Class, Family, FunctionId, Instr, OPS, Opcode, ReasonId, RecordKind, for_each_op, op,
+};
 use obverse_tape::{NoTape, Record, record};
 use obverse_workcell::{MotionReport, Workcell};
 
@@ -56,8 +58,8 @@ macro_rules! acts {
             None => unreachable!("a machine always has the frame of its start"),
         };
         Acts {
-            operands: &state.operands,
-            slots: &mut frame.slots,
+            operands: &frame.words.operands,
+            slots: &mut frame.words.slots,
             positions: &mut frame.positions,
             settings: &mut state.settings,
             raised: &mut state.raised,
@@ -89,6 +91,9 @@ macro_rules! act_arm {
     ($m:ident, $host:ident, $op:expr, $always:ident, $recorded:ident, error $($c:tt)*) => {
         act_arm!(@ $m, $host, $op, $always, $recorded, $($c)*)
     };
+    ($m:ident, $host:ident, $op:expr, always_forward, $recorded:ident, reversal never $w:tt) => {
+        $m.never_forward($op, $host)
+    };
     (@ $m:ident, $host:ident, $op:expr, $always:ident, $recorded:ident, always) => {
         $m.$always($op, $host)
     };
@@ -100,6 +105,46 @@ macro_rules! act_arm {
         let _ = $op;
         Err(Failure::Trap(TrapKind::TapeEmpty))
     }};
+}
+
+/// The classes of the opcodes that are written out in this file, since calls change the frame and
+/// blocks change what going back means, which no opcode can see. A row of the table that says
+/// otherwise does not compile.
+const WRITTEN_HERE: &[(Opcode, Class)] = &[
+    (Opcode::Call, Class::Always),
+    (Opcode::Enter, Class::Always),
+    (Opcode::Return, Class::AfterForward(RecordKind::Frame)),
+    (Opcode::Halt, Class::Always),
+    (Opcode::Checkpoint, Class::Always),
+    (Opcode::BlockBegin, Class::Always),
+    (Opcode::BlockSkip, Class::Always),
+    (Opcode::BlockReplace, Class::Always),
+];
+
+const _: () = {
+    let mut row = 0;
+    while row < OPS.len() {
+        let info = &OPS[row];
+        if matches!(info.family, Family::Frame | Family::Reversal) {
+            let mut is_right = matches!(info.class, Class::Never(_));
+            let mut at = 0;
+            while at < WRITTEN_HERE.len() {
+                let (opcode, class) = &WRITTEN_HERE[at];
+                is_right |= *opcode as u8 == info.code && is_same_class(class, &info.class);
+                at += 1;
+            }
+            assert!(is_right, "a row of the family frame or reversal is not of its code's class");
+        }
+        row += 1;
+    }
+};
+
+const fn is_same_class(written: &Class, row: &Class) -> bool {
+    match (written, row) {
+        (Class::Always, Class::Always) => true,
+        (Class::AfterForward(written), Class::AfterForward(row)) => *written as u8 == *row as u8,
+        _ => false,
+    }
 }
 
 impl Machine<'_> {
@@ -120,20 +165,12 @@ impl Machine<'_> {
                 self.tell(Direction::Forward, at, None, host);
                 self.advance()
             }
-            Instr::Barrier { .. } | Instr::Irreversible { .. } => {
-                self.tell(Direction::Forward, at, None, host);
-                let may_drop = self.state.compensations.is_empty() && self.state.open_blocks == 0;
-                if let (Some(tape), true) = (&mut self.tape, may_drop) {
-                    tape.barrier();
-                }
-                self.advance()
-            }
             Instr::BlockBegin {} => {
                 self.state.open_blocks += 1;
                 self.advance()
             }
             Instr::BlockSkip { .. } | Instr::BlockReplace { .. } => {
-                self.state.open_blocks -= 1;
+                self.state.open_blocks = self.state.open_blocks.saturating_sub(1);
                 self.advance()
             }
             _ => self.finish_forward(at, host, at + 1),
@@ -272,6 +309,24 @@ impl Machine<'_> {
         let (report, level_before) = (acts.report, acts.level_before);
         self.remember_level(Direction::Forward, level_before);
         done.map(|()| report)
+    }
+
+    /// Nothing before this can be reversed: what is on the tape is dropped, unless a block with a
+    /// reverse of its own is open, which passes over this too.
+    fn never_forward<O>(
+        &mut self,
+        op: O,
+        host: &mut Host<'_>,
+    ) -> Result<Option<MotionReport>, Failure>
+    where
+        O: for<'a> Never<Acts<'a>>,
+    {
+        op.forward(&mut acts!(self, host))?;
+        let may_drop = self.state.compensations.is_empty() && self.state.open_blocks == 0;
+        if let (Some(tape), true) = (&mut self.tape, may_drop) {
+            tape.barrier();
+        }
+        Ok(None)
     }
 
     fn always_reverse<O>(
@@ -429,7 +484,7 @@ impl Machine<'_> {
         let declared = &self.program.module().functions[function.index()];
         let mut frame = Frame::new(function.0, declared, at as u32 + 1);
         let parameters = usize::from(declared.parameters);
-        frame.slots[..parameters].copy_from_slice(&self.state.operands[..parameters]);
+        frame.words.slots[..parameters].copy_from_slice(&self.state.operands()[..parameters]);
         self.state.frames.push(frame);
         self.state.depth = 0;
         self.state.place.jump_forward(declared.first as usize);
@@ -489,6 +544,9 @@ impl Machine<'_> {
     }
 
     fn return_reverse(&mut self, at: usize, function: FunctionId, host: &mut Host<'_>) -> Outcome {
+        if self.state.frames.len() >= MAX_FRAMES {
+            return Err(Stop::Trap(Trap { pc: at as u32, kind: TrapKind::Foreign }));
+        }
         let declared = &self.program.module().functions[function.index()];
         let (words, joints) = Frame::saved_size(declared);
         let missing = |kind| Stop::Trap(Trap { pc: at as u32, kind });
@@ -540,15 +598,13 @@ impl Machine<'_> {
         if self.state.frames.len() >= MAX_FRAMES {
             return Err(Stop::Trap(Trap { pc: at as u32, kind: TrapKind::CallDepth }));
         }
-        let Some(tape) = &self.tape else {
+        if self.tape.is_none() {
             return Err(Stop::Trap(Trap { pc: at as u32, kind: TrapKind::NoTape }));
-        };
+        }
         let declared = &self.program.module().functions[function.index()];
-        self.state.compensations.push(Compensation {
-            frames: self.state.frames.len() + 1,
-            tape: tape.place(),
-            place: self.state.place,
-        });
+        self.state
+            .compensations
+            .push(Compensation { frames: self.state.frames.len() + 1, place: self.state.place });
         self.state.frames.push(Frame::new(function.0, declared, at as u32 + 1));
         self.state.place.pc = at;
         self.state.place.jump_forward(declared.first as usize);

@@ -14,6 +14,9 @@ pub enum Stop {
     AtStart,
     /// Going in reverse, it is where it was asked to go back to.
     AtMark,
+    /// Going in reverse, it is before the mark, or behind it from the start: the mark lies in a block
+    /// that was passed over, within a statement, or in another history.
+    OffMark,
     /// So many steps as it was given have been made.
     Budget,
     /// The program raised an error, which is now pending; going on goes on behind it.
@@ -77,6 +80,8 @@ pub enum TrapKind {
     CallDepth,
     /// An item has no such keyframe.
     NoKeyframe,
+    /// A time to wait that is negative, or no number.
+    NotADuration,
     /// The tape holds as much as it may.
     TapeFull,
     /// A record that must be on the tape is not: the tape belongs to another run.
@@ -110,6 +115,7 @@ impl std::fmt::Display for TrapKind {
             Self::CallDepth => {
                 write!(f, "more than {} calls are under way", crate::state::MAX_FRAMES)
             }
+            Self::NotADuration => write!(f, "the time to wait is negative, or no number"),
             Self::NoKeyframe => write!(f, "the item has no such keyframe"),
             Self::TapeFull => {
                 write!(f, "the tape holds as much as it may; a barrier would empty it")

@@ -6,8 +6,22 @@
 
 use obverse_isa::{CounterId, ErrorId, GlobalId, LocalId, Setting};
 
-/// The slots of a frame, and the operand stack.
+/// The slots of a frame, or the operand stack.
 pub type Slots = [u64; 256];
+
+/// The words of a call: its slots, and the operands of the statement in hand. Side by side, so that
+/// one address serves both.
+#[derive(Clone, Debug)]
+pub(crate) struct Words {
+    pub(crate) slots: Slots,
+    pub(crate) operands: Slots,
+}
+
+impl Default for Words {
+    fn default() -> Self {
+        Self { slots: [0; 256], operands: [0; 256] }
+    }
+}
 
 /// The identities of the present settings, by [`Setting`].
 pub type Settings = [u64; 2];
@@ -31,12 +45,11 @@ pub struct Fixed<'a> {
 /// instructions passes its value on in a register. With an empty stack `top` means nothing, and the
 /// place that it is spilled to is one that no stack reaches.
 pub struct Values<'a> {
-    pub(crate) operands: &'a mut Slots,
+    pub(crate) words: &'a mut Words,
     pub(crate) top: u64,
     pub(crate) depth: u8,
-    pub(crate) slots: &'a mut Slots,
     pub(crate) globals: &'a mut [u64],
-    pub(crate) fixed: Fixed<'a>,
+    pub(crate) fixed: &'a Fixed<'a>,
 }
 
 /// Where the words of a counter are in a frame's slots.
@@ -65,7 +78,7 @@ impl Values<'_> {
     /// Write the newest operand where the others are.
     #[inline(always)]
     pub(crate) fn spill(&mut self) {
-        self.operands[place(self.depth, 1)] = self.top;
+        self.words.operands[place(self.depth, 1)] = self.top;
     }
 
     /// Push a word.
@@ -85,7 +98,7 @@ impl Values<'_> {
     /// Replace the two newest operands, older first, by what is made of them.
     #[inline(always)]
     pub fn binary(&mut self, make: impl FnOnce(u64, u64) -> u64) {
-        let older = self.operands[place(self.depth, 2)];
+        let older = self.words.operands[place(self.depth, 2)];
         self.depth = self.depth.wrapping_sub(1);
         self.top = make(older, self.top);
     }
@@ -101,7 +114,7 @@ impl Values<'_> {
     #[inline(always)]
     #[must_use]
     pub fn below(&self) -> u64 {
-        self.operands[place(self.depth, 2)]
+        self.words.operands[place(self.depth, 2)]
     }
 
     /// Push an integer.
@@ -126,7 +139,7 @@ impl Values<'_> {
     #[inline(always)]
     #[must_use]
     pub fn local(&self, local: LocalId) -> u64 {
-        self.slots[local.index()]
+        self.words.slots[local.index()]
     }
 
     /// A variable of the program.
@@ -140,7 +153,7 @@ impl Values<'_> {
     #[inline(always)]
     #[must_use]
     pub fn counter(&self, counter: CounterId) -> i64 {
-        self.slots[usize::from(CounterSlots::of(counter).present)].cast_signed()
+        self.words.slots[usize::from(CounterSlots::of(counter).present)].cast_signed()
     }
 
     /// What a setting is now.
@@ -178,7 +191,7 @@ impl Variables<'_, '_> {
     /// A local variable.
     #[inline(always)]
     pub fn local(&mut self, local: LocalId) -> &mut u64 {
-        &mut self.0.slots[local.index()]
+        &mut self.0.words.slots[local.index()]
     }
 
     /// A variable of the program.
@@ -190,7 +203,7 @@ impl Variables<'_, '_> {
     /// A slot of the frame.
     #[inline(always)]
     pub(crate) fn slot(&mut self, slot: u8) -> &mut u64 {
-        &mut self.0.slots[usize::from(slot)]
+        &mut self.0.words.slots[usize::from(slot)]
     }
 
     /// What is there to be read.

@@ -121,11 +121,10 @@ impl<'s> Checker<'s> {
         let requires = clauses.requires.map(|(condition, span)| self.requires(condition, span));
         let distance = self.move_distance(distance);
         let (axis, frame) = direction(heading.value, frame);
-        let limit = match clauses.stop_if {
-            Some((condition, span)) => self.force_limit(condition, span),
-            // Nothing pushes harder: the move goes all the way or fails.
-            None => alone(Expression::real(f64::MAX, ValueType::FORCE, motion)),
-        };
+        let limit = clauses.stop_if.map(|(condition, span)| self.force_limit(condition, span));
+        if limit.as_ref().is_some_and(|limit| !limit.value.of_type.is_unknown()) {
+            self.warn_of_silent_stop(clauses);
+        }
         let speed = clauses
             .speed
             .map(|(word, span)| (speed(word), self.hidden("speed", Type::Speed, span)));
@@ -164,6 +163,23 @@ impl<'s> Checker<'s> {
             initial,
             spans,
         }
+    }
+
+    /// A move that is stopped has failed, and here nobody would know.
+    fn warn_of_silent_stop(&mut self, clauses: &Clauses<'_, 's>) {
+        let Some((_, span)) = clauses.stop_if else { return };
+        if clauses.succeeds_if.is_some() || clauses.on_failure.is_some() {
+            return;
+        }
+        let message = format!(
+            "`{}` fails when this stops it, and the program goes on all the same",
+            self.frame.name
+        );
+        self.reports.add(
+            warning(Code::SilentStop, span, message, "being stopped counts as failure").with_help(
+                "say what is to follow by `on failure { .. }`, or what success is by `succeeds if`",
+            ),
+        );
     }
 
     fn requires(&mut self, condition: &ast::Expression<'s>, span: Span) -> (Prepared, ReasonId) {

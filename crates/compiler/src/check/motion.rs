@@ -3,10 +3,10 @@
 use super::Checker;
 use super::expression::Need;
 use super::frame::NamedPosition;
-use super::names::Meaning;
+use super::names::{Found, Meaning, Symbol};
 use crate::tree::{Expression, ExpressionKind, Motion, StatementKind};
 use crate::types::ValueType;
-use obverse_isa::{Axis, Frame, KeyframeId, Path};
+use obverse_isa::{Axis, Frame, ItemId, KeyframeId, Path};
 use obverse_syntax::ast::{FrameWord, Heading, Name, Target};
 use obverse_syntax::codes::Code;
 use obverse_syntax::diagnostic::Diagnostic;
@@ -96,6 +96,12 @@ impl<'s> Checker<'s> {
             }
             _ => false,
         };
+        if let Found::Here(Symbol { meaning: Meaning::Item(item), name: declared, .. }) =
+            self.names.find(name.value)
+        {
+            self.report_whole_item(name, declared.span, item);
+            return None;
+        }
         let meaning = self.resolve(name, "a joint configuration or a position", is_target)?;
         let kind = match meaning {
             Meaning::Position(slot) => return Some(Named::Position(slot)),
@@ -106,6 +112,35 @@ impl<'s> Checker<'s> {
         };
         let of_type = ValueType::Joints;
         Some(Named::Joints(Expression { kind, of_type, span: name.span }))
+    }
+
+    /// `move to block` without a keyframe.
+    fn report_whole_item(&mut self, name: Name<'s>, declared: Span, item: ItemId) {
+        self.names.mark_used(name.value);
+        let message = format!("`{}` is an item, and one of its keyframes is needed", name.value);
+        let known = self.known_keyframes(item);
+        let targets: Vec<String> =
+            known.iter().map(|keyframe| format!("`{}.{keyframe}`", name.value)).collect();
+        let help = match targets.as_slice() {
+            [] => format!("give it one: `item {} {{ keyframe grasp = .. }}`", name.value),
+            [only] => format!("write {only}"),
+            [first, ..] => format!("write for example {first}; it has {}", known.join(", ")),
+        };
+        let diagnostic =
+            Diagnostic::error(Code::WrongKind, name.span, message, "which keyframe of it?")
+                .with_label(declared, "an item, declared here")
+                .with_help(help);
+        self.reports.add(diagnostic);
+    }
+
+    /// The names of an item's keyframes.
+    fn known_keyframes(&self, item: ItemId) -> Vec<String> {
+        let keyframes = self.module.items.get(item.index()).map(|item| &item.keyframes[..]);
+        let names = keyframes
+            .unwrap_or_default()
+            .iter()
+            .filter_map(|known| self.module.keyframes.get(usize::from(known.name)).cloned());
+        names.collect()
     }
 
     fn keyframe_target(
@@ -141,20 +176,11 @@ impl<'s> Checker<'s> {
         Some((Expression { kind, of_type: ValueType::Item, span: item.span }, id))
     }
 
-    fn report_no_keyframe(
-        &mut self,
-        item: Name<'s>,
-        keyframe: Name<'s>,
-        declared: obverse_isa::ItemId,
-    ) {
+    fn report_no_keyframe(&mut self, item: Name<'s>, keyframe: Name<'s>, declared: ItemId) {
         let message = format!("the item `{}` has no keyframe `{}`", item.value, keyframe.value);
         let mut diagnostic =
             Diagnostic::error(Code::UnknownKeyframe, keyframe.span, message, "not one of its own");
-        let keyframes = &self.module.items[declared.index()].keyframes;
-        let known: Vec<String> = keyframes
-            .iter()
-            .filter_map(|known| self.module.keyframes.get(usize::from(known.name)).cloned())
-            .collect();
+        let known = self.known_keyframes(declared);
         let meant = self.reports.meant(keyframe.value, known.iter().map(String::as_str));
         diagnostic = match meant {
             Some(meant) => diagnostic.with_help(format!("did you mean `{meant}`?")),

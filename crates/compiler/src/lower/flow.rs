@@ -50,6 +50,9 @@ impl Lower<'_> {
             return self.add_break(mark);
         }
         let test = self.test(condition, false);
+        if otherwise.is_none() {
+            self.at_asserted(ending_when);
+        }
         let skip = self.code.jump(|target| test.to(target));
         self.block(then);
         let Some(otherwise) = otherwise else {
@@ -61,6 +64,7 @@ impl Lower<'_> {
             };
         };
         self.at(then.end, None);
+        self.at_asserted(ending_when);
         let over = self.frame.is_reached.then(|| self.jump());
         self.join_one(skip);
         self.block(otherwise);
@@ -85,6 +89,14 @@ impl Lower<'_> {
     fn join_asserted(&mut self, mark: Mark, predicate: &Expression, when: bool) {
         self.assertion(predicate, when);
         self.code.join(mark, |from| Instr::JoinAssert { prefix: PREFIX, from });
+    }
+
+    /// A jump to an asserted join comes next: where the assertion fails, it is here that the machine
+    /// stops, and it is the predicate that is to be shown.
+    fn at_asserted(&mut self, predicate: Option<&Expression>) {
+        if let Some(predicate) = predicate {
+            self.at(predicate.span, None);
+        }
     }
 
     /// Push whether a predicate is `when`.
@@ -122,6 +134,7 @@ impl Lower<'_> {
         self.block(body);
         if let Some(top) = top {
             self.at(body.end, None);
+            self.at_asserted(entered_when);
             self.jump_back(top);
         }
         skip

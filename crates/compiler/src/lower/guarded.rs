@@ -19,7 +19,7 @@ impl Lower<'_> {
         let cannot = self.requires(guarded);
         self.at(guarded.spans.motion, None);
         self.hoists(&guarded.distance.hoists);
-        self.hoists(&guarded.limit.hoists);
+        guarded.limit.iter().for_each(|limit| self.hoists(&limit.hoists));
         if let Some((_, former)) = guarded.speed {
             self.keep(Setting::Speed, former);
         }
@@ -60,9 +60,14 @@ impl Lower<'_> {
             self.set(SettingValue::Speed(speed));
         }
         self.expression(&guarded.distance.value);
-        self.expression(&guarded.limit.value);
         let (axis, frame) = (guarded.axis, guarded.frame);
-        self.push(Instr::MoveGuarded { prefix: PREFIX, axis, frame });
+        match &guarded.limit {
+            Some(limit) => {
+                self.expression(&limit.value);
+                self.push(Instr::MoveGuarded { prefix: PREFIX, axis, frame });
+            }
+            None => self.push(Instr::MoveRelative { prefix: PREFIX, axis, frame }),
+        }
         self.push(Instr::SenseDistance { local: guarded.results.distance });
         self.push(Instr::SensePeakForce { local: guarded.results.force });
         if let Some((_, former)) = guarded.speed {

@@ -53,7 +53,8 @@ impl Lower<'_> {
                 let reason = *reason;
                 self.push(Instr::Irreversible { reason });
                 self.scoped(Scope::Irreversible(reason), block);
-                self.at(block.end, None);
+                // Going back stops here, and it is the header that says why.
+                self.at(statement.span, None);
                 if self.frame.is_reached {
                     self.push(Instr::Irreversible { reason });
                 }

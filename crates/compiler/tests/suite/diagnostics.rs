@@ -299,7 +299,7 @@ fn an_advanced_move_is_stopped_by_a_force_and_repeated_after_a_failure() {
 advanced move a { distance 1 mm x stop if distance > 1 mm }
 advanced move b { distance 1 mm x stop if force < 1 N }
 advanced move c { distance 1 mm x stop if 5 N < force
-  on success { repeat with perturbation 2 times } }
+  succeeds if force > 5 N on success { repeat with perturbation 2 times } }
 advanced move d { distance 1 mm x
   on failure { repeat with perturbation 2 times repeat with perturbation 2 times } }
 advanced move e { distance 1 mm x stop if force > 1 mm succeeds if force }
@@ -308,12 +308,64 @@ sequence main { wait 1 s }
         &[
             r#"E0305 1:43 "distance > 1 mm""#,
             r#"E0305 2:43 "force < 1 N""#,
-            r#"E0312 4:16 "repeat with perturbation 2 times""#,
+            r#"E0312 4:40 "repeat with perturbation 2 times""#,
             r#"E0312 6:49 "repeat with perturbation 2 times""#,
             r#"E0202 7:51 "1 mm""#,
             r#"E0201 7:68 "force""#,
         ],
     );
+}
+
+#[test]
+fn a_stop_that_counts_as_failure_and_that_nothing_follows_is_warned_of() {
+    check(
+        r#"
+error missed { }
+advanced move silent { distance 1 mm x stop if force > 5 N }
+advanced move told { distance 1 mm x stop if force > 5 N on failure { throw missed } }
+advanced move meant { distance 1 mm x stop if force > 5 N succeeds if force > 5 N }
+advanced move free { distance 1 mm x }
+sequence main { advance silent advance told advance meant advance free }
+"#,
+        &[r#"W0004 2:40 "stop if force > 5 N""#],
+    );
+}
+
+#[test]
+fn a_sequence_that_always_calls_itself_is_warned_of() {
+    check(
+        r#"
+error jam { then stop }
+sequence plain { wait 1 s call plain }
+sequence within { speed slow { irreversible "glue" { call within } } }
+sequence branch { if holding { call branch } call once }
+sequence leaves { if holding { return } call leaves }
+sequence throws { if holding { throw jam } call throws }
+sequence given_up { call throws call given_up }
+sequence counted { repeat 3 times { call counted } }
+sequence once { wait 1 s }
+sequence main {
+  call plain call within call branch call leaves call throws call given_up call counted
+}
+"#,
+        &[r#"W0005 2:27 "call plain""#, r#"W0005 3:54 "call within""#],
+    );
+}
+
+#[test]
+fn a_move_to_an_item_is_told_its_keyframes() {
+    let help = |item: &str| {
+        let source = format!("{item}\nsequence main {{ move to block }}");
+        let diagnostics = obverse_compiler::compile("test.obv", &source).diagnostics;
+        assert_eq!(diagnostics.len(), 1, "{diagnostics:#?}");
+        diagnostics[0].help.clone().unwrap_or_default()
+    };
+    assert_eq!(help("item block { keyframe grasp = [0, 0, 1] mm }"), "write `block.grasp`");
+    assert_eq!(
+        help("item block { keyframe grasp = [0, 0, 1] mm keyframe above = [0, 0, 9] mm }"),
+        "write for example `block.grasp`; it has grasp, above"
+    );
+    assert_eq!(help("item block { }"), "give it one: `item block { keyframe grasp = .. }`");
 }
 
 #[test]

@@ -42,8 +42,7 @@ fn an_advanced_move_with_behaviours() {
         push.speed slow
         setting.set speed
         push.const 0.005
-        push.const 1.7976931348623157e308
-        move.guarded +y base
+        move.relative +y base
         sense.distance $distance
         sense.peak_force $force
         push.local $speed
@@ -81,8 +80,8 @@ fn an_advanced_move_that_is_tried_again() {
         remember $initial
         push.int 0
         push.int 3
-        for.enter 0 +35
-        for.top 0 +33
+        for.enter 0 +34
+        for.top 0 +32
         push.counter 0
         push.int 0
         jump.unless.ne +20
@@ -107,16 +106,15 @@ fn an_advanced_move_that_is_tried_again() {
         move.offset tcp
         join -20
         push.const 0.005
-        push.const 1.7976931348623157e308
-        move.guarded +x tcp
+        move.relative +x tcp
         sense.distance $distance
         sense.peak_force $force
         push.const 0.004999
         push.local $distance
         real.le
         jump.if +5
-        for.next 0 -33
-        for.exit 0 -35
+        for.next 0 -32
+        for.exit 0 -34
         move.slot $initial linear
         error.raise e
         join -5
@@ -144,8 +142,7 @@ fn a_requirement_traps_or_throws() {
         bool.and
         require go requires holding and not input 2
         push.const 0.001
-        push.const 1.7976931348623157e308
-        move.guarded +x tcp
+        move.relative +x tcp
         sense.distance $distance
         sense.peak_force $force
         return
@@ -166,17 +163,16 @@ fn a_requirement_that_fails_throws_what_failure_throws() {
         enter
         sense.holding $0
         push.local $0
-        jump.unless +10
+        jump.unless +9
         push.const 0.001
-        push.const 1.7976931348623157e308
-        move.guarded +x tcp
+        move.relative +x tcp
         sense.distance $distance
         sense.peak_force $force
         push.const 0.000999
         push.local $distance
         real.le
         jump.if +3
-        join -10
+        join -9
         error.raise e
         join -3
         return

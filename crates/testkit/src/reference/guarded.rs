@@ -56,7 +56,8 @@ struct Aftermath<'p> {
 /// The values that hold for all attempts.
 struct Numbers {
     distance_m: f64,
-    limit_n: f64,
+    /// None where no force stops the move: contact is a collision then.
+    limit_n: Option<f64>,
 }
 
 impl<'p> Interpreter<'p, '_> {
@@ -92,10 +93,9 @@ impl<'p> Interpreter<'p, '_> {
         let (distance_m, limit_n) = match clauses.limit {
             Some(limit) => {
                 let [distance, limit] = self.values([way.distance, limit])?;
-                (distance.real(), limit.real())
+                (distance.real(), Some(limit.real()))
             }
-            // Nothing pushes harder.
-            None => (self.value(way.distance)?.real(), f64::MAX),
+            None => (self.value(way.distance)?.real(), None),
         };
         Ok(Numbers { distance_m, limit_n })
     }
@@ -146,7 +146,7 @@ impl<'p> Interpreter<'p, '_> {
         let before = self.speed;
         self.speed = clauses.speed.map_or(before, speed);
         let goal = self.displaced(numbers.distance_m, way.heading, way.frame);
-        let report = self.go(goal, Path::Linear, Some(numbers.limit_n))?;
+        let report = self.go(goal, Path::Linear, numbers.limit_n)?;
         self.speed = before;
         if !clauses.matters() {
             return Ok(true);

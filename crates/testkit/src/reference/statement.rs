@@ -196,14 +196,16 @@ impl<'p> Interpreter<'p, '_> {
     ) -> Run<Option<&'p Block<'p>>> {
         let bit = u16::try_from(input).unwrap_or(u16::MAX);
         let longest_s = self.value(timeout)?.real();
-        let mut looks = (longest_s / POLL_S).ceil();
+        let looks = (longest_s / POLL_S).ceil();
+        let mut looked = 0.0;
         while self.cell.input(bit)? != high {
             self.step()?;
-            if looks < 1.0 || looks.is_nan() {
+            if looked >= looks || looks.is_nan() {
                 return Ok(otherwise);
             }
-            looks -= 1.0;
-            self.cell.wait(POLL_S.min(longest_s))?;
+            let left_s = longest_s - looked * POLL_S;
+            looked += 1.0;
+            self.cell.wait(left_s.clamp(0.0, POLL_S))?;
         }
         Ok(None)
     }

@@ -36,6 +36,16 @@ impl Acts<'_> {
         f64::from_bits(self.operands[at])
     }
 
+    /// The time in seconds at a place of the stack picture.
+    ///
+    /// # Errors
+    /// If it is none; asked for before anything is commanded.
+    pub(crate) fn duration_s(&self, at: usize) -> Result<f64, TrapKind> {
+        let duration_s = self.real(at);
+        let is_one = duration_s >= 0.0 && duration_s.is_finite();
+        if is_one { Ok(duration_s) } else { Err(TrapKind::NotADuration) }
+    }
+
     /// The module's joint configuration at a place of the stack picture.
     ///
     /// # Errors
@@ -54,8 +64,12 @@ impl Acts<'_> {
     }
 
     /// The speed that holds.
-    pub(crate) fn speed(&self) -> Speed {
-        Speed::ALL[self.settings[obverse_isa::Setting::Speed as usize] as usize % Speed::ALL.len()]
+    ///
+    /// # Errors
+    /// If there is none: a value from a tape that was tampered with.
+    pub(crate) fn speed(&self) -> Result<Speed, TrapKind> {
+        let speed = self.settings[obverse_isa::Setting::Speed as usize];
+        Speed::ALL.get(speed as usize).copied().ok_or(TrapKind::Foreign)
     }
 
     /// The tool that holds.

@@ -177,7 +177,7 @@ impl AfterForward<Course<'_, '_, '_>> for op::ForEnter {
     fn save(&self, course: &Course<'_, '_, '_>) -> Counter {
         let slots = CounterSlots::of(self.counter);
         let values = course.variables.values();
-        let slot = |slot: u8| values.slots[usize::from(slot)];
+        let slot = |slot: u8| values.words.slots[usize::from(slot)];
         Counter([slot(slots.first), slot(slots.last), slot(slots.present)])
     }
 

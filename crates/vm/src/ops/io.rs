@@ -22,31 +22,36 @@ impl AfterForward<Acts<'_>> for op::OutputSet {
     }
 
     fn forward(self, acts: &mut Acts<'_>, _: &Bit) -> Result<(), Failure> {
-        acts.set_and_settle(self.bit.0, self.level.is_high(), acts.real(0))
+        let settle_s = acts.duration_s(0)?;
+        acts.set_and_settle(self.bit.0, self.level.is_high(), settle_s)
     }
 
     fn reverse(self, acts: &mut Acts<'_>, saved: &Bit) -> Result<(), Failure> {
-        acts.set_and_settle(self.bit.0, saved.0, acts.real(0))
+        let settle_s = acts.duration_s(0)?;
+        acts.set_and_settle(self.bit.0, saved.0, settle_s)
     }
 }
 
 impl Always<Acts<'_>> for op::OutputToggle {
     fn forward(self, acts: &mut Acts<'_>) -> Result<(), Failure> {
+        let settle_s = acts.duration_s(0)?;
         let before = acts.level_before.unwrap_or_else(|| acts.cell.output(self.bit.0));
         acts.level_before = Some(before);
-        acts.set_and_settle(self.bit.0, !before, acts.real(0))
+        acts.set_and_settle(self.bit.0, !before, settle_s)
     }
 
     fn reverse(self, acts: &mut Acts<'_>) -> Result<(), Failure> {
+        let settle_s = acts.duration_s(0)?;
         let before = acts.level_before.unwrap_or_else(|| !acts.cell.output(self.bit.0));
         acts.level_before = Some(before);
-        acts.set_and_settle(self.bit.0, before, acts.real(0))
+        acts.set_and_settle(self.bit.0, before, settle_s)
     }
 }
 
 impl Always<Acts<'_>> for op::Wait {
     fn forward(self, acts: &mut Acts<'_>) -> Result<(), Failure> {
-        Ok(acts.cell.wait(acts.real(0))?)
+        let duration_s = acts.duration_s(0)?;
+        Ok(acts.cell.wait(duration_s)?)
     }
 
     fn reverse(self, _: &mut Acts<'_>) -> Result<(), Failure> {

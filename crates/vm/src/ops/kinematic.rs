@@ -40,7 +40,7 @@ fn axis(axis: isa::Axis) -> obverse_geometry::Axis {
 
 impl Acts<'_> {
     fn go(&mut self, goal: Goal, path: Path, force_limit_n: Option<f64>) -> Result<(), Failure> {
-        let motion = Motion { goal, path, speed: self.speed(), tool: self.tool(), force_limit_n };
+        let motion = Motion { goal, path, speed: self.speed()?, tool: self.tool(), force_limit_n };
         self.report = Some(self.cell.execute(&motion)?);
         Ok(())
     }

@@ -5,6 +5,7 @@ mod error;
 pub(crate) mod flow;
 mod io;
 mod kinematic;
+mod reversal;
 mod sense;
 mod setting;
 mod value;

@@ -47,13 +47,14 @@ const MAX_POLLS: f64 = 1e7;
 /// Counts the looks, and not the time that has passed, since a clock that is far on may not be
 /// moved by the little that is left to wait.
 fn wait_for(acts: &mut Acts<'_>, op: op::WaitInput) -> Result<bool, Failure> {
-    let longest_s = acts.real(0);
-    let polls = (longest_s / POLL_S).clamp(0.0, MAX_POLLS);
-    for _ in 0..polls.ceil() as u64 {
+    let longest_s = acts.duration_s(0)?;
+    let polls = (longest_s / POLL_S).min(MAX_POLLS).ceil() as u64;
+    for poll in 0..polls {
         if acts.cell.input(op.bit.0)? == op.level.is_high() {
             return Ok(true);
         }
-        acts.cell.wait(POLL_S.min(longest_s))?;
+        let left_s = longest_s - poll as f64 * POLL_S;
+        acts.cell.wait(left_s.clamp(0.0, POLL_S))?;
     }
     Ok(acts.cell.input(op.bit.0)? == op.level.is_high())
 }

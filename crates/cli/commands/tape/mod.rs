@@ -1,0 +1,59 @@
+//! `obverse tape`: show what is on a recorded tape, newest first, and what it costs by opcode, by
+//! instruction and by robot command.
+//!
+//! [`walk`] finds the records, [`cost`] adds them up, [`text`] and [`machine`] show them to people
+//! and machines, [`value`] says what a record holds.
+
+mod cost;
+mod machine;
+mod text;
+mod value;
+mod walk;
+
+use super::Result;
+use crate::problem::{Message, Problem};
+use crate::{Outcome, load};
+use cost::Costs;
+use obverse_bytecode::{Module, verify};
+use obverse_tape::TapeFile;
+use std::path::PathBuf;
+use walk::Walk;
+
+#[derive(clap::Args)]
+pub(crate) struct Arguments {
+    /// The tape file.
+    file: PathBuf,
+    /// Show at most so many records: 40 where no number is given, with `--json` all.
+    #[arg(long, value_name = "N")]
+    records: Option<usize>,
+    /// For machines: JSON Lines, a summary last.
+    #[arg(long)]
+    pub(crate) json: bool,
+}
+
+/// What there is to show.
+struct Shown<'a> {
+    module: &'a Module,
+    file: &'a TapeFile,
+    walk: &'a Walk,
+    costs: &'a Costs,
+}
+
+pub(crate) fn run(arguments: &Arguments) -> Result {
+    let path = &arguments.file;
+    let (file, module) =
+        TapeFile::from_bytes(&load::bytes(path)?).map_err(|error| Problem::of_file(path, error))?;
+    let program = verify(module).map_err(|errors| {
+        Problem::several(errors.iter().map(|error| Message::of_file(path, error)).collect())
+    })?;
+    let walk = walk::back(&program, &file).map_err(|error| Problem::of_file(path, error))?;
+    let module = program.module();
+    let costs = Costs::of(module, &walk);
+    let shown = Shown { module, file: &file, walk: &walk, costs: &costs };
+    if arguments.json {
+        machine::show(&shown, arguments.records);
+    } else {
+        text::show(&shown, arguments.records.unwrap_or(text::RECORDS));
+    }
+    Ok(Outcome::Done)
+}

@@ -1,0 +1,6 @@
+//! The text of a module.
+#![no_main]
+
+libfuzzer_sys::fuzz_target!(|bytes: &[u8]| {
+    let _came_in = obverse_testkit::hostile::assembly(bytes);
+});

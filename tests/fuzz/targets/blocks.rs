@@ -1,0 +1,6 @@
+//! The law `machine_laws::blocks` over random bytes.
+#![no_main]
+
+libfuzzer_sys::fuzz_target!(|bytes: &[u8]| {
+    let _held = obverse_testkit::machine_laws::blocks(&mut arbitrary::Unstructured::new(bytes));
+});
