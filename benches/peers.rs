@@ -2,13 +2,16 @@
 //! `cargo bench -p obverse-benches --features peers --bench peers`.
 //!
 //! Each figure is the fastest of many rounds, so that a noisy machine disturbs all alike; what
-//! counts are the ratios.
+//! counts are the ratios. All three must come to the same number.
 
 use mlua::Lua;
 use obverse_benches::{SOURCES, machine, program, timed};
 use obverse_testkit::Ledger;
-use obverse_vm::Direction;
+use obverse_vm::{Direction, Machine};
 use std::time::{Duration, Instant};
+
+/// The variables that hold what the programs come to.
+const RESULTS: [&str; 2] = ["_odd", "_checksum"];
 
 const LUA: [&str; 2] = [
     "local total, rest = 0, 0
@@ -85,6 +88,9 @@ fn main() {
         let mut best = [Duration::MAX; 3];
         for _ in 0..rounds {
             best[0] = best[0].min(timed(&mut taped, Direction::Forward, &mut cell));
+            let ours = result(&taped, RESULTS[index]);
+            let theirs = [expect(chunk.call::<i64>(())), wasm()];
+            assert_eq!([ours; 2], theirs, "{name}: left Obverse twice, right Lua and wasmi");
             timed(&mut taped, Direction::Reverse, &mut cell);
             best[1] = best[1].min(clock(|| expect(chunk.call::<i64>(()))));
             best[2] = best[2].min(clock(&mut wasm));
@@ -96,6 +102,15 @@ fn main() {
             ours / wasmi
         );
     }
+}
+
+/// An integer variable of a program.
+fn result(machine: &Machine<'_>, name: &str) -> i64 {
+    let globals = &machine.program().module().globals;
+    let Some(index) = globals.iter().position(|global| global.name == name) else {
+        panic!("there is no variable {name}")
+    };
+    machine.state().globals()[index].cast_signed()
 }
 
 fn clock(run: impl FnOnce() -> i64) -> Duration {

@@ -8,20 +8,6 @@ use std::process::Command;
 
 const ROOT: &str = env!("CARGO_MANIFEST_DIR");
 
-/// Which crates each crate knows, itself below all of them. What only tests and benchmarks build
-/// stands in [`WORKSHOP`].
-const LAYERS: &[(&str, &[&str])] = &[
-    ("isa", &[]),
-    ("geometry", &[]),
-    ("bytecode", &["isa"]),
-    ("tape", &["bytecode", "geometry"]),
-    ("workcell", &["geometry"]),
-    ("sim", &["geometry", "workcell"]),
-    ("vm", &["bytecode", "geometry", "isa", "tape", "workcell"]),
-    ("recovery", &["isa", "vm", "workcell"]),
-    ("syntax", &[]),
-    ("compiler", &["bytecode", "isa", "syntax"]),
-];
 /// The command line, which may know all of the above.
 const COMMAND_LINE: &str = "obverse";
 const WORKSHOP: [&str; 2] = ["testkit", "benches"];
@@ -39,6 +25,23 @@ const LONG: [&str; 2] = ["crates/syntax/src/ast.rs", "crates/testkit/src/code.rs
 /// Documents that there must be.
 const DOCUMENTS: [&str; 5] =
     ["README.md", "ARCHITECTURE.md", "CHANGELOG.md", "isa/README.md", "isa/ISA.md"];
+
+/// Which crates each crate knows, itself below all of them: the list of that in the architecture's
+/// page. What only tests and benchmarks build stands in [`WORKSHOP`].
+fn layers() -> Vec<(String, Vec<String>)> {
+    let page = read(&Path::new(ROOT).join("ARCHITECTURE.md"));
+    let rows = page.lines().skip_while(|line| *line != "```layers").skip(1);
+    let layers: Vec<_> = rows
+        .take_while(|line| *line != "```")
+        .map(|line| {
+            let (name, knows) = line.split_once("->").expect("a row `crate -> crates`");
+            let knows = knows.split_whitespace().map(str::to_owned).collect();
+            (name.trim().to_owned(), knows)
+        })
+        .collect();
+    assert!(!layers.is_empty(), "the page has no list of layers");
+    layers
+}
 
 fn metadata() -> Metadata {
     MetadataCommand::new().no_deps().exec().expect("cargo tells what the workspace is")
@@ -66,8 +69,11 @@ fn fails(findings: &[String]) {
 #[test]
 fn dependencies_point_one_way() {
     let metadata = metadata();
-    let table: BTreeMap<_, BTreeSet<_>> =
-        LAYERS.iter().map(|(name, knows)| (*name, knows.iter().copied().collect())).collect();
+    let layers = layers();
+    let table: BTreeMap<&str, BTreeSet<&str>> = layers
+        .iter()
+        .map(|(name, knows)| (name.as_str(), knows.iter().map(String::as_str).collect()))
+        .collect();
     let mut found = BTreeMap::new();
     for package in &metadata.packages {
         let name = short(package.name.as_str());
@@ -87,30 +93,31 @@ fn dependencies_point_one_way() {
             found.insert(name, normal);
         }
     }
-    assert_eq!(found, table, "left what cargo says, right the table of this test");
+    assert_eq!(found, table, "left what cargo says, right what ARCHITECTURE.md says");
     let mut below = BTreeSet::new();
-    for (name, knows) in LAYERS {
+    for (name, knows) in &layers {
         assert!(knows.iter().all(|known| below.contains(known)), "{name} knows one above it");
-        below.insert(*name);
+        below.insert(name);
     }
 }
 
 /// All that a crate links, of ours.
-fn links<'t>(name: &'t str, all: &mut BTreeSet<&'t str>) {
-    let (_, knows) = LAYERS.iter().find(|(row, _)| *row == name).expect("it has a row");
-    for known in *knows {
+fn links<'t>(layers: &'t [(String, Vec<String>)], name: &str, all: &mut BTreeSet<&'t str>) {
+    let (_, knows) = layers.iter().find(|(row, _)| row == name).expect("it has a row");
+    for known in knows {
         if all.insert(known) {
-            links(known, all);
+            links(layers, known, all);
         }
     }
 }
 
 #[test]
 fn the_compiler_never_links_the_machine_nor_the_machine_the_compiler() {
+    let layers = layers();
     for (columns, forbidden) in [(&LANGUAGE[..], &MACHINE[..]), (&MACHINE[..], &LANGUAGE[..])] {
         for name in columns {
             let mut all = BTreeSet::new();
-            links(name, &mut all);
+            links(&layers, name, &mut all);
             let met: Vec<_> = forbidden.iter().filter(|other| all.contains(**other)).collect();
             assert!(met.is_empty(), "{name} links {met:?}");
         }

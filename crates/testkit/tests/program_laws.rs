@@ -22,7 +22,7 @@ fn bytes(seed: u64) -> Vec<u8> {
     (0..length).map(|_| next().to_le_bytes()[0]).collect()
 }
 
-fn hold(law: fn(&mut Unstructured<'_>) -> Result<()>) {
+fn hold(law: fn(&mut Unstructured<'_>) -> Result<bool>) {
     for seed in 0..PROGRAMS {
         let bytes = bytes(seed);
         // Randomness that runs out is no failure of a law.

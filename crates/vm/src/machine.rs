@@ -2,8 +2,9 @@
 
 use crate::hot::{self, Exit};
 use crate::link::{LinkError, Links};
+use crate::observe::Observer;
 use crate::state::{Direction, Frame, State};
-use crate::step::{Host, Observer, Outcome};
+use crate::step::{Host, Outcome};
 use crate::stop::Stop;
 use obverse_bytecode::Verified;
 use obverse_isa::Class;
@@ -295,14 +296,9 @@ impl<'p> Machine<'p> {
 
     /// Count the instructions that something runs, in either direction.
     fn count(&mut self, run: impl FnOnce(&mut Self) -> Outcome) -> Outcome {
-        let (steps, compensations) = (self.state.steps(), self.state.compensations.len());
+        let steps = self.state.steps();
         let outcome = run(self);
-        // Where a compensation begins or ends, the number of steps takes up another thread.
-        let made = match compensations == self.state.compensations.len() {
-            true => self.state.steps().abs_diff(steps),
-            false => 1,
-        };
-        self.executed = self.executed.saturating_add(made);
+        self.executed = self.executed.saturating_add(self.state.steps().abs_diff(steps));
         outcome
     }
 

@@ -7,39 +7,13 @@
 use crate::class::{AfterForward, Always, Failure, Never};
 use crate::hot::{self, Exit};
 use crate::machine::{Machine, values};
+use crate::observe::{Event, Observer};
 use crate::ops::acts::Acts;
 use crate::state::{Compensation, Direction, Frame, MAX_FRAMES, Pending};
 use crate::stop::{Refusal, Stop, Trap, TrapKind};
-use obverse_isa::{
-    Class, Family, FunctionId, Instr, OPS, Opcode, ReasonId, RecordKind, for_each_op, op,
-};
+use obverse_isa::{Class, FunctionId, Instr, ReasonId, for_each_op, op};
 use obverse_tape::{NoTape, Record, record};
 use obverse_workcell::{MotionReport, Workcell};
-
-/// Something that a machine did, for whoever tells or counts it.
-#[derive(Clone, Copy, Debug)]
-pub struct Event {
-    /// Which way it was done.
-    pub direction: Direction,
-    /// The instruction.
-    pub pc: u32,
-    /// The same, decoded.
-    pub instr: Instr,
-    /// What came of it, if it was a motion.
-    pub report: Option<MotionReport>,
-    /// How many calls are under way after it.
-    pub frames: usize,
-}
-
-/// Who is told what a machine does. Told of acts, calls, returns, errors and the reversal words.
-pub trait Observer {
-    /// It was done.
-    fn on_event(&mut self, event: &Event, cell: &dyn Workcell);
-}
-
-impl Observer for () {
-    fn on_event(&mut self, _: &Event, _: &dyn Workcell) {}
-}
 
 /// What a step ended in, if the run does not go on.
 pub(crate) type Outcome = Result<(), Stop>;
@@ -105,46 +79,6 @@ macro_rules! act_arm {
         let _ = $op;
         Err(Failure::Trap(TrapKind::TapeEmpty))
     }};
-}
-
-/// The classes of the opcodes that are written out in this file, since calls change the frame and
-/// blocks change what going back means, which no opcode can see. A row of the table that says
-/// otherwise does not compile.
-const WRITTEN_HERE: &[(Opcode, Class)] = &[
-    (Opcode::Call, Class::Always),
-    (Opcode::Enter, Class::Always),
-    (Opcode::Return, Class::AfterForward(RecordKind::Frame)),
-    (Opcode::Halt, Class::Always),
-    (Opcode::Checkpoint, Class::Always),
-    (Opcode::BlockBegin, Class::Always),
-    (Opcode::BlockSkip, Class::Always),
-    (Opcode::BlockReplace, Class::Always),
-];
-
-const _: () = {
-    let mut row = 0;
-    while row < OPS.len() {
-        let info = &OPS[row];
-        if matches!(info.family, Family::Frame | Family::Reversal) {
-            let mut is_right = matches!(info.class, Class::Never(_));
-            let mut at = 0;
-            while at < WRITTEN_HERE.len() {
-                let (opcode, class) = &WRITTEN_HERE[at];
-                is_right |= *opcode as u8 == info.code && is_same_class(class, &info.class);
-                at += 1;
-            }
-            assert!(is_right, "a row of the family frame or reversal is not of its code's class");
-        }
-        row += 1;
-    }
-};
-
-const fn is_same_class(written: &Class, row: &Class) -> bool {
-    match (written, row) {
-        (Class::Always, Class::Always) => true,
-        (Class::AfterForward(written), Class::AfterForward(row)) => *written as u8 == *row as u8,
-        _ => false,
-    }
 }
 
 impl Machine<'_> {

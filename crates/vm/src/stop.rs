@@ -14,8 +14,8 @@ pub enum Stop {
     AtStart,
     /// Going in reverse, it is where it was asked to go back to.
     AtMark,
-    /// Going in reverse, it is before the mark, or behind it from the start: the mark lies in a block
-    /// that was passed over, within a statement, or in another history.
+    /// Going in reverse, it is before the mark, or behind it from the start: the mark lies in a
+    /// block that was passed over, within a statement, or in another history.
     OffMark,
     /// So many steps as it was given have been made.
     Budget,

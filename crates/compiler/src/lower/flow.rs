@@ -91,8 +91,8 @@ impl Lower<'_> {
         self.code.join(mark, |from| Instr::JoinAssert { prefix: PREFIX, from });
     }
 
-    /// A jump to an asserted join comes next: where the assertion fails, it is here that the machine
-    /// stops, and it is the predicate that is to be shown.
+    /// A jump to an asserted join comes next: where the assertion fails, it is here that the
+    /// machine stops, and it is the predicate that is to be shown.
     fn at_asserted(&mut self, predicate: Option<&Expression>) {
         if let Some(predicate) = predicate {
             self.at(predicate.span, None);

@@ -12,4 +12,5 @@ mod guarded;
 mod limits;
 mod module;
 mod reversal;
+mod reversal_mistakes;
 mod statements;

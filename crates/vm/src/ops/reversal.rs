@@ -1,5 +1,5 @@
-//! The family `reversal`, as far as opcodes do anything: what is of class never has no reverse. Blocks
-//! and checkpoints are the step loop's, since they change what going back means.
+//! The family `reversal`, as far as opcodes do anything: what is of class never has no reverse.
+//! Blocks and checkpoints are the step loop's, since they change what going back means.
 
 use super::acts::Acts;
 use crate::class::{Failure, Never};

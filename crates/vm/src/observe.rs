@@ -1,0 +1,30 @@
+//! What a machine tells of its doings. Knows nothing of how they are told on.
+
+use crate::state::Direction;
+use obverse_isa::Instr;
+use obverse_workcell::{MotionReport, Workcell};
+
+/// Something that a machine did, for whoever tells or counts it.
+#[derive(Clone, Copy, Debug)]
+pub struct Event {
+    /// Which way it was done.
+    pub direction: Direction,
+    /// The instruction.
+    pub pc: u32,
+    /// The same, decoded.
+    pub instr: Instr,
+    /// What came of it, if it was a motion.
+    pub report: Option<MotionReport>,
+    /// How many calls are under way after it.
+    pub frames: usize,
+}
+
+/// Who is told what a machine does. Told of acts, calls, returns, errors and the reversal words.
+pub trait Observer {
+    /// It was done.
+    fn on_event(&mut self, event: &Event, cell: &dyn Workcell);
+}
+
+impl Observer for () {
+    fn on_event(&mut self, _: &Event, _: &dyn Workcell) {}
+}
