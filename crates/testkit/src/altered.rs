@@ -209,7 +209,7 @@ fn alter_state(u: &mut Unstructured<'_>, state: &mut Snapshot) -> Result<()> {
 
 fn alter_place(u: &mut Unstructured<'_>, module: &Module, state: &mut Snapshot) -> Result<()> {
     match u.int_in_range(0..=4_u8)? {
-        0 => state.steps = u.int_in_range(0..=10_000)?,
+        0 => state.steps += u.int_in_range(0..=10_000)?,
         1 => state.pc = near(u, state.pc)?,
         2 => {
             state.pc = u.choose_index(module.code.len())? as u32;

@@ -39,6 +39,13 @@ impl Place {
         (self.pc as u64).wrapping_add(self.offset)
     }
 
+    /// Whether no more than `floor` steps are left. A count that went below nothing, as one from a
+    /// tape that was tampered with can, is below every floor.
+    #[inline(always)]
+    pub(crate) fn is_at_or_below(self, floor: u64) -> bool {
+        self.steps().cast_signed() <= floor.cast_signed()
+    }
+
     /// Go on behind the instruction at `to`, as one step from the instruction at hand.
     #[inline(always)]
     pub(crate) fn jump_forward(&mut self, to: usize) {
@@ -480,7 +487,7 @@ pub(crate) fn reverse<const ONE: bool>(
                     if ONE {
                         break 'out Exit::One;
                     }
-                    if run.place.steps() <= floor {
+                    if run.place.is_at_or_below(floor) {
                         break 'out Exit::Bound;
                     }
                 };
@@ -499,7 +506,7 @@ pub(crate) fn reverse<const ONE: bool>(
                 if ONE {
                     break Exit::One;
                 }
-                if run.place.steps() <= floor {
+                if run.place.is_at_or_below(floor) {
                     break Exit::Bound;
                 }
             }

@@ -26,6 +26,9 @@ pub struct Machine<'p> {
     pub(crate) executed: u64,
     /// Whether what is reversed restores the program's state alone and commands nothing.
     pub(crate) is_muted: bool,
+    /// How many steps back over a block with a reverse of its own are believed: a machine knows its
+    /// own past, and a recording may be anybody's.
+    pub(crate) believed_steps: u64,
 }
 
 /// When a run ends at the latest.
@@ -106,6 +109,7 @@ impl<'p> Machine<'p> {
             commands: 0,
             executed: 0,
             is_muted: false,
+            believed_steps: u64::MAX,
         })
     }
 

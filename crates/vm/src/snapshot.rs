@@ -11,6 +11,9 @@ use obverse_tape::{FrameSnapshot, Snapshot, Streams, Tape, record};
 use obverse_workcell::{Shadow, Workcell};
 use std::fmt;
 
+/// How many steps back over a block with a reverse of its own are made at once in a recording.
+const BELIEVED_STEPS: u64 = 1 << 24;
+
 /// A snapshot that is of no run of the program.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct SnapshotError {
@@ -107,6 +110,7 @@ impl<'p> Machine<'p> {
         check(module, snapshot)?;
         let mut machine =
             Self::new(program, cell).map_err(|_| SnapshotError { what: "workcell" })?;
+        machine.believed_steps = BELIEVED_STEPS;
         let state = &mut machine.state;
         state.place = Place {
             pc: snapshot.pc as usize,
@@ -171,6 +175,7 @@ fn check(module: &Module, snapshot: &Snapshot) -> Result<(), SnapshotError> {
         if fits { Ok(()) } else { Err(SnapshotError { what }) }
     };
     let innermost = snapshot.frames.last().map(|frame| usize::from(frame.function));
+    fits(snapshot.steps < 1 << 62, "number of steps")?;
     fits((1..=MAX_FRAMES).contains(&snapshot.frames.len()), "number of calls")?;
     fits(module.function_at(snapshot.pc).is_some_and(|at| Some(at) == innermost), "position")?;
     fits(module.functions[innermost.unwrap_or(0)].first < snapshot.pc, "position")?;

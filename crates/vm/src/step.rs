@@ -496,7 +496,8 @@ impl Machine<'_> {
     }
 
     /// Going in reverse over a block with a reverse of its own: the program's state goes back step
-    /// by step, and the workcell is commanded nothing. Nothing can stop that, so it is one step.
+    /// by step, and the workcell is commanded nothing. Nothing of a run's own can stop that, so it
+    /// is one step.
     fn pass_over(&mut self, end: usize, begin: usize, host: &mut Host<'_>) -> Outcome {
         self.state.open_blocks += 1;
         self.state.place.pc = end;
@@ -510,13 +511,15 @@ impl Machine<'_> {
     /// Reverse, commanding nothing, until the instruction before this place in this frame is met.
     fn reverse_muted(&mut self, until: usize, host: &mut Host<'_>) -> Outcome {
         let frames = self.state.frames.len();
+        let floor = self.state.steps().saturating_sub(self.believed_steps);
         self.is_muted = true;
         let mut outcome = Ok(());
         while outcome.is_ok()
             && !(self.state.place.pc == until + 1 && self.state.frames.len() == frames)
         {
-            outcome = match self.hot_reverse::<false>(0) {
+            outcome = match self.hot_reverse::<false>(floor) {
                 Exit::Trap(at, kind) => Err(self.trapped(at, kind)),
+                Exit::Bound => Err(self.trapped(until, TrapKind::Foreign)),
                 _ if self.state.place.pc == until + 1 && self.state.frames.len() == frames => {
                     Ok(())
                 }
