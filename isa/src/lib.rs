@@ -1,8 +1,8 @@
 //! The instruction set: one table, and what derives from it.
 //!
 //! [`table`] holds a row an opcode with every property as a typed column; [`instr`], [`codec`] and
-//! [`reference`] derive from the rows. No dependencies, and no knowledge of modules, machines or
-//! robots. To add an instruction, read `isa/README.md`.
+//! [`mod@reference`] derive from the rows. No dependencies, and no knowledge of modules, machines
+//! or robots. To add an instruction, read `isa/README.md`.
 
 pub mod codec;
 pub mod columns;

@@ -2,7 +2,7 @@
 //!
 //! A stream a kind of record, each popped by the opcodes that pushed it, so that nothing is stored
 //! that the code already implies: no program counters, no tags, no lengths. [`record`] has the
-//! kinds of record, [`stream`] the chunked storage, [`tape`] the tape, [`file`] its file. Knows
+//! kinds of record, [`stream`] the chunked storage, [`tape`] the tape, [`mod@file`] its file. Knows
 //! nothing of when a record is written or used: that is the machine's step loop.
 
 pub mod file;

@@ -2,7 +2,7 @@
 //! they are. Each is a function of bytes: the same function is a test and a fuzz target.
 //!
 //! Knows the doors that untrusted input comes in by, and what a user would do with what came in;
-//! how valid things are altered is for [`altered`](crate::altered) to know.
+//! how valid things are altered is for [`crate::altered`] to know.
 
 use crate::Ledger;
 use crate::altered;
