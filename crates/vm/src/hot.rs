@@ -229,6 +229,16 @@ pub(crate) fn forward<R: Recorder, const ONE: bool>(
                 if ONE {
                     break Exit::One;
                 }
+                // Once more: two places to dispatch from are predicted better than one, and a run
+                // depends less on where the compiler happens to lay them.
+                match run.code[run.place.pc] {
+                    $(Instr::$ident { $($field,)* } => {
+                        forward_arm!(op::$ident { $($field,)* }, run, $family $class $($payload)?);
+                    })*
+                }
+                if ONE {
+                    break Exit::One;
+                }
             }
         };
     }
