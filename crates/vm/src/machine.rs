@@ -280,7 +280,8 @@ impl<'p> Machine<'p> {
             };
             match (exit, now) {
                 (Exit::Trap(at, kind), _) => Err(machine.trapped(at, kind)),
-                (Exit::Bound | Exit::One, _) => machine.check_tape(),
+                (Exit::Bound | Exit::One, Direction::Forward) => machine.check_tape(),
+                (Exit::Bound | Exit::One, Direction::Reverse) => Ok(()),
                 (Exit::Slow, Direction::Forward) => machine.slow_forward(host),
                 (Exit::Slow, Direction::Reverse) => machine.slow_reverse(host),
             }
