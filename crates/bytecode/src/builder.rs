@@ -4,7 +4,7 @@
 //! hands out a [`Mark`] for the first and patches it when the second comes. Knows nothing of what
 //! the code means.
 
-use obverse_isa::{FunctionId, Instr, Label, Prefix};
+use obverse_isa::{Instr, Label, Prefix};
 
 /// An instruction that waits for its other half.
 #[derive(Debug)]
@@ -88,13 +88,6 @@ impl CodeBuilder {
         at
     }
 
-    /// Replace the instruction at an index, keeping its prefix.
-    pub fn replace(&mut self, at: u32, instr: Instr) {
-        if let Some(old) = self.code.get_mut(at as usize) {
-            *old = with_prefix(instr, Prefix(old.prefix()));
-        }
-    }
-
     /// The last instructions, as long as they are pure and of this statement.
     #[must_use]
     pub fn last_pure(&self) -> &[Instr] {
@@ -108,12 +101,6 @@ impl CodeBuilder {
         }
         self.prefix -= 1;
         self.code.pop()
-    }
-
-    /// The call of a function that is not yet known: patched by [`replace`](Self::replace).
-    #[must_use]
-    pub fn unknown_function() -> FunctionId {
-        FunctionId(u16::MAX)
     }
 
     /// The code.

@@ -1,7 +1,7 @@
 //! The builder: prefixes are counted, and jumps and joins find each other.
 
 use obverse_bytecode::CodeBuilder;
-use obverse_isa::{CounterId, FunctionId, Instr, Label, LocalId, Prefix, op};
+use obverse_isa::{CounterId, Instr, Label, LocalId, Prefix, op};
 
 const X: LocalId = LocalId(0);
 const NONE: Prefix = Prefix(0);
@@ -86,18 +86,6 @@ fn crossing_jumps_find_their_own_joins() {
     let targets: Vec<_> = code.iter().filter_map(Instr::jump_target).collect();
     let sources: Vec<_> = code.iter().filter_map(Instr::join_from).collect();
     assert_eq!((targets, sources), (vec![Label(2), Label(3)], vec![Label(0), Label(1)]));
-}
-
-#[test]
-fn an_instruction_is_replaced_with_its_prefix_kept() {
-    let mut code = CodeBuilder::new();
-    let (prefix, function) = (NONE, CodeBuilder::unknown_function());
-    code.push(op::PushInt { value: 1 });
-    let call = code.push(op::Call { prefix, function });
-    let function = FunctionId(7);
-    code.replace(call, Instr::Call { prefix, function });
-    code.replace(99, Instr::Halt {});
-    assert_eq!(code.finish()[1..], [Instr::Call { prefix: Prefix(1), function }]);
 }
 
 #[test]
