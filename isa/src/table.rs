@@ -130,6 +130,8 @@ macro_rules! for_each_op {
 0x37 IntRemLocalImmediate "int.rem.local.imm" (local: LocalId, value: i32) [-- int] always value;
 /// Push the remainder of a loop counter by a small integer; zero is a trap.
 0x38 IntRemCounterImmediate "int.rem.counter.imm" (counter: CounterId, value: i32) [-- int] always value;
+/// Push a loop counter times a small integer.
+0x39 IntMulCounterImmediate "int.mul.counter.imm" (counter: CounterId, value: i32) [-- int] always value;
 
 /// Store into a local variable; its former value is saved.
 0x40 StoreLocal "store.local" (prefix: Prefix, local: LocalId) [local --] after_forward(Word) variable;
@@ -149,6 +151,10 @@ macro_rules! for_each_op {
 0x47 AddLocalLocal "add.local.local" (local: LocalId, value: LocalId) [--] always variable;
 /// Add a loop counter to a local integer; in reverse, subtract it.
 0x48 AddLocalCounter "add.local.counter" (local: LocalId, counter: CounterId) [--] always variable;
+/// Subtract a local integer from another one; in reverse, add it.
+0x49 SubLocalLocal "sub.local.local" (local: LocalId, value: LocalId) [--] always variable;
+/// Subtract a loop counter from a local integer; in reverse, add it.
+0x4a SubLocalCounter "sub.local.counter" (local: LocalId, counter: CounterId) [--] always variable;
 
 /// Go on at a join, which is landed on in the same step.
 0x50 Jump "jump" (target: Label) [--] always flow;

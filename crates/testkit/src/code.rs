@@ -222,11 +222,11 @@ impl Body<'_, '_> {
             1 => drop(self.code.push(op::PushConstant { constant: ConstantId(1) })),
             2 if self.depth > 0 => {
                 let counter = CounterId(self.pick(self.depth)?);
-                if self.flip()? {
-                    self.code.push(op::PushCounter { counter });
-                } else {
-                    self.code.push(op::IntRemCounterImmediate { counter, value: 3 });
-                }
+                match self.pick(3)? {
+                    0 => self.code.push(op::PushCounter { counter }),
+                    1 => self.code.push(op::IntRemCounterImmediate { counter, value: 3 }),
+                    _ => self.code.push(op::IntMulCounterImmediate { counter, value: -5 }),
+                };
             }
             3 => drop(self.code.push(op::PushConstant { constant: ConstantId(0) })),
             2 | 4 => self.read_int(but)?,
@@ -441,13 +441,19 @@ impl Body<'_, '_> {
                 let value = self.int_local()?;
                 if value == local {
                     self.code.push(op::AddLocalImmediate { local, value: 1 });
-                } else {
+                } else if self.flip()? {
                     self.code.push(op::AddLocalLocal { local, value });
+                } else {
+                    self.code.push(op::SubLocalLocal { local, value });
                 }
             }
             5 if self.depth > 0 => {
                 let counter = CounterId(self.pick(self.depth)?);
-                self.code.push(op::AddLocalCounter { local, counter });
+                if self.flip()? {
+                    self.code.push(op::AddLocalCounter { local, counter });
+                } else {
+                    self.code.push(op::SubLocalCounter { local, counter });
+                }
             }
             _ => {
                 let value = self.small()?;

@@ -39,13 +39,6 @@ impl Place {
         (self.pc as u64).wrapping_add(self.offset)
     }
 
-    /// Whether no more than `floor` steps are left. A count that went below nothing, as one from a
-    /// tape that was tampered with can, is below every floor.
-    #[inline(always)]
-    pub(crate) fn is_at_or_below(self, floor: u64) -> bool {
-        self.steps().cast_signed() <= floor.cast_signed()
-    }
-
     /// Go on behind the instruction at `to`, as one step from the instruction at hand.
     #[inline(always)]
     pub(crate) fn jump_forward(&mut self, to: usize) {
@@ -71,7 +64,7 @@ fn trap(at: usize, failure: Failure) -> Exit {
 }
 
 macro_rules! borrow {
-    ($values:ident) => {
+    ($values:expr) => {
         Values {
             words: &mut *$values.words,
             top: $values.top,
@@ -288,39 +281,115 @@ pub(crate) fn evaluate(
     Ok(())
 }
 
-/// For each join, where the statement of its jump begins: one load in the chain from a statement to
-/// the one before it, where the label of the join and the prefix of the jump would be two.
-pub(crate) fn ways_back(code: &[Instr]) -> Vec<u32> {
-    let start_of_jump = |instr: &Instr| {
-        let from = instr.join_from()?;
-        let jump = code.get(from.index())?;
-        Some(from.0 - u32::from(jump.prefix()))
+/// How many statements that have nothing to do in reverse are passed over at once.
+const MAX_PASSED: usize = 8;
+
+/// Where a run in reverse stands when a statement has been undone: before which instruction, and
+/// how many steps earlier. In one word, which stays in a register.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct WayBack(u64);
+
+impl WayBack {
+    fn new(pc: u32, steps: u32) -> Self {
+        Self(u64::from(steps) << 32 | u64::from(pc))
+    }
+
+    #[inline(always)]
+    fn pc(self) -> usize {
+        (self.0 & u64::from(u32::MAX)) as usize
+    }
+
+    #[inline(always)]
+    fn steps(self) -> i64 {
+        (self.0 >> 32).cast_signed()
+    }
+
+    /// From behind an effect to before its statement.
+    fn beside(code: &[Instr], effect: usize) -> Option<Self> {
+        let prefix = usize::from(code.get(effect)?.prefix());
+        let pc = u32::try_from(effect.checked_sub(prefix)?).ok()?;
+        Some(Self::new(pc, prefix as u32 + 1))
+    }
+
+    /// From behind a join to before the statement of its jump.
+    fn by_jump(code: &[Instr], join: usize) -> Option<Self> {
+        Self::beside(code, code[join].join_from()?.index())
+    }
+
+    fn from(code: &[Instr], effect: usize, by_jump: bool) -> Option<Self> {
+        if by_jump { Self::by_jump(code, effect) } else { Self::beside(code, effect) }
+    }
+
+    /// Over one more statement, if it has nothing to do in reverse.
+    fn further(self, code: &[Instr]) -> Option<Self> {
+        let before = self.pc().checked_sub(1)?;
+        let way = match code[before] {
+            Instr::Land { .. } => Self::by_jump(code, before)?,
+            instr if is_plain_jump(instr) => Self::beside(code, before)?,
+            _ => return None,
+        };
+        let steps = u32::try_from(self.steps() + way.steps()).ok()?;
+        Some(Self::new(u32::try_from(way.pc()).ok()?, steps))
+    }
+
+    fn each_further(self, code: &[Instr]) -> impl Iterator<Item = Self> {
+        std::iter::successors(Some(self), |way| way.further(code)).take(MAX_PASSED)
+    }
+}
+
+/// A jump that changes nothing but where the run is.
+fn is_plain_jump(instr: Instr) -> bool {
+    instr.jump_target().is_some()
+        && !matches!(instr, Instr::ForEnter { .. } | Instr::ForNext { .. })
+}
+
+/// An instruction as a run in reverse meets it, with the ways on from there: beside it, and by the
+/// jump that it names. They pass over the statements that have nothing to do in reverse: one
+/// load stands for a label, the prefix of a jump, and a dispatch for each statement passed over.
+#[derive(Clone, Copy, Debug)]
+#[repr(align(32))]
+pub(crate) struct Reversed {
+    instr: Instr,
+    beside: WayBack,
+    jump: WayBack,
+}
+
+/// The code as a run in reverse meets it.
+pub(crate) fn reversed(code: &[Instr]) -> Vec<Reversed> {
+    let whole = |at, by_jump| {
+        let first = WayBack::from(code, at, by_jump);
+        first.and_then(|way| way.each_further(code).last()).unwrap_or_default()
     };
-    code.iter().map(|instr| start_of_jump(instr).unwrap_or(0)).collect()
+    let each = code.iter().enumerate();
+    each.map(|(at, &instr)| Reversed { instr, beside: whole(at, false), jump: whole(at, true) })
+        .collect()
+}
+
+/// The way back that passes over no more than is needed to undo `steps`.
+#[inline(never)]
+#[cold]
+fn nearest(code: &[Instr], effect: usize, by_jump: bool, steps: i64) -> WayBack {
+    let mut ways =
+        WayBack::from(code, effect, by_jump).into_iter().flat_map(|way| way.each_further(code));
+    ways.find(|way| way.steps() >= steps).unwrap_or_default()
 }
 
 struct Reverse<'r, 'a> {
     code: &'r [Instr],
-    ways_back: &'r [u32],
     values: Values<'a>,
-    place: Place,
     tape: &'r mut Tape,
 }
 
 impl Reverse<'_, '_> {
-    /// Undo the jump at `from` that led to the join at `landed`, and stand before its statement.
+    /// Undo what a jump did besides leading to a join.
     #[inline(always)]
-    fn undo_jump(&mut self, join: Instr, landed: usize, from: Label) -> Result<(), Exit> {
-        let from = from.index();
+    fn undo_jump(&mut self, join: Instr, from: Label) -> Result<(), Exit> {
         match join {
-            Instr::ForTop { counter, .. } => self.uncount(from, counter)?,
-            Instr::ForExit { .. } => self.uncount_none(from)?,
+            Instr::ForTop { counter, .. } => self.uncount(from.index(), counter),
+            Instr::ForExit { .. } => self.uncount_none(from.index()),
             // Nothing is lost by any other jump.
-            _ => {}
+            _ => Ok(()),
         }
-        self.place.jump_reverse(landed, from);
-        self.place.pc = self.ways_back[landed] as usize;
-        Ok(())
     }
 
     /// Undo a `for.next` that went round.
@@ -345,20 +414,30 @@ impl Reverse<'_, '_> {
     }
 }
 
-/// Reverse: one opcode, by family and class. `$at` is the instruction, `$prefix` its prefix. What
-/// needs its operands leaves by `$operands`, to come back with them.
+/// Reverse: one opcode, by family and class, as whether a jump was undone. `$at` is the
+/// instruction, `$prefix` its prefix. What needs its operands dispatches from its prefix
+/// on, forward, and comes back with them.
 macro_rules! reverse_arm {
-    ($op:expr, $run:ident, $instr:ident, $at:ident, $prefix:expr, $operands:lifetime $out:lifetime
-        variable always) => {{
-        if $prefix > 0 {
-            break $operands ($at, $prefix);
+    ($op:expr, $run:ident, $instr:ident, $at:ident, $prefix:expr, $is_loaded:ident, $out:lifetime
+        value always) => {{
+        if !$is_loaded {
+            break $out Exit::Slow;
         }
+        if let Err(kind) = $op.run(&mut $run.values) {
+            break $out Exit::Trap($at, kind);
+        }
+        $at += 1;
+        continue;
+    }};
+    ($op:expr, $run:ident, $instr:ident, $at:ident, $prefix:expr, $is_loaded:ident, $out:lifetime
+        variable always) => {{
+        load_operands!($run, $at, $prefix, $is_loaded);
         if let Err(failure) = $op.reverse(&mut Variables(&mut $run.values)) {
             break $out trap($at, failure);
         }
-        $run.place.pc = $at;
+        false
     }};
-    ($op:expr, $run:ident, $instr:ident, $at:ident, $prefix:expr, $operands:lifetime $out:lifetime
+    ($op:expr, $run:ident, $instr:ident, $at:ident, $prefix:expr, $is_loaded:ident, $out:lifetime
         variable after_forward $record:ident) => {{
         let Some(saved) = record::$record::pop($run.tape) else {
             break $out Exit::Trap($at, TrapKind::TapeEmpty);
@@ -366,12 +445,12 @@ macro_rules! reverse_arm {
         if let Err(failure) = $op.reverse(&mut Variables(&mut $run.values), &saved) {
             break $out trap($at, failure);
         }
-        $run.place.pc = $at - $prefix;
+        false
     }};
-    ($op:expr, $run:ident, $instr:ident, $at:ident, $prefix:expr, $operands:lifetime $out:lifetime
+    ($op:expr, $run:ident, $instr:ident, $at:ident, $prefix:expr, $is_loaded:ident, $out:lifetime
         flow always) => {{
         if matches!($instr, Instr::JoinAssert { .. }) {
-            break $operands ($at, $prefix);
+            load_operands!($run, $at, $prefix, $is_loaded);
         }
         let mut variables = Variables(&mut $run.values);
         let mut course = Course { variables: &mut variables, way: Way::Beside };
@@ -379,9 +458,9 @@ macro_rules! reverse_arm {
             break $out trap($at, failure);
         }
         let way = course.way;
-        retrace!($run, $instr, $at, $prefix, way, $out);
+        retrace!($run, $instr, way, $out)
     }};
-    ($op:expr, $run:ident, $instr:ident, $at:ident, $prefix:expr, $operands:lifetime $out:lifetime
+    ($op:expr, $run:ident, $instr:ident, $at:ident, $prefix:expr, $is_loaded:ident, $out:lifetime
         flow after_forward $record:ident) => {{
         let Some(saved) = record::$record::pop($run.tape) else {
             break $out Exit::Trap($at, TrapKind::TapeEmpty);
@@ -392,85 +471,57 @@ macro_rules! reverse_arm {
             break $out trap($at, failure);
         }
         let way = course.way;
-        retrace!($run, $instr, $at, $prefix, way, $out);
+        retrace!($run, $instr, way, $out)
     }};
-    ($op:expr, $run:ident, $instr:ident, $at:ident, $prefix:expr, $operands:lifetime $out:lifetime
+    ($op:expr, $run:ident, $instr:ident, $at:ident, $prefix:expr, $is_loaded:ident, $out:lifetime
         $($other:tt)*) => {{
         let _ = $op;
         break $out Exit::Slow;
     }};
 }
 
-/// Reverse, with the operands there: one opcode, by family and class.
-macro_rules! with_operands_arm {
-    ($op:expr, $values:ident, variable always) => {
-        $op.reverse(&mut Variables(&mut $values)).map(|()| Way::Beside)
+/// Dispatch from the prefix of an effect on, unless that is done.
+macro_rules! load_operands {
+    ($run:ident, $at:ident, $prefix:expr, $is_loaded:ident) => {
+        if $prefix > 0 && !$is_loaded {
+            $is_loaded = true;
+            $run.values.depth = 0;
+            $at -= $prefix;
+            continue;
+        }
     };
-    ($op:expr, $values:ident, flow always) => {{
-        let mut variables = Variables(&mut $values);
-        let mut course = Course { variables: &mut variables, way: Way::Beside };
-        $op.reverse(&mut course).map(|()| course.way)
-    }};
-    ($op:expr, $values:ident, $($other:tt)*) => {{
-        let _ = $op;
-        Ok(Way::Beside)
-    }};
 }
 
-/// Reverse an effect whose inverse needs its operands: run its prefix forward once more, then undo
-/// it. Of its own, so that the loop's values stay in registers.
-#[inline(never)]
-fn reverse_with_operands(
-    code: &[Instr],
-    mut values: Values<'_>,
-    effect: usize,
-    prefix: usize,
-) -> Result<Way, Exit> {
-    values.depth = 0;
-    let ran = evaluate(code, effect - prefix, effect, &mut values);
-    ran.map_err(|(at, kind)| Exit::Trap(at, kind))?;
-    macro_rules! dispatch {
-        ($(
-            $(#[doc = $doc:literal])+
-            $code:literal $ident:ident $mnemonic:literal ($($field:ident: $ty:ty),*)
-            [$($picture:tt)*] $class:ident $(($payload:tt))? $family:ident;
-        )*) => {
-            match code[effect] {
-                $(Instr::$ident { $($field,)* } => with_operands_arm!(
-                    op::$ident { $($field,)* }, values, $family $class $($payload)?
-                ),)*
-            }
-        };
-    }
-    for_each_op!(dispatch).map_err(|failure| trap(effect, failure))
-}
-
-/// Go back where a flow opcode said. A jump is undone in the same step as its landing.
+/// Whether a flow opcode said to go back by its jump, which is then undone.
 macro_rules! retrace {
-    ($run:ident, $instr:ident, $at:ident, $prefix:expr, $way:ident, $out:lifetime) => {
+    ($run:ident, $instr:ident, $way:ident, $out:lifetime) => {
         match $way {
-            Way::Beside => $run.place.pc = $at - $prefix,
-            Way::Named(from) => {
-                if let Err(exit) = $run.undo_jump($instr, $at, from) {
-                    break $out exit;
-                }
-            }
+            Way::Beside => false,
+            Way::Named(from) => match $run.undo_jump($instr, from) {
+                Ok(()) => true,
+                Err(exit) => break $out exit,
+            },
         }
     };
 }
 
 /// Run in reverse, a statement at a time, until something else is needed, no more than `floor`
-/// steps are left, or, with `ONE`, after one statement. Begins between statements.
+/// steps are left, or, with `ONE`, after one statement. Begins between statements. A jump is undone
+/// in the same step as its landing.
 #[inline(never)]
 pub(crate) fn reverse<const ONE: bool>(
     code: &[Instr],
-    ways_back: &[u32],
+    reversed: &[Reversed],
     values: &mut Values<'_>,
     place: &mut Place,
     floor: u64,
     tape: &mut Tape,
 ) -> Exit {
-    let mut run = Reverse { code, ways_back, values: borrow!(values), place: *place, tape };
+    let mut run = Reverse { code, values: borrow!(values), tape };
+    let mut pc = place.pc;
+    // A count that went below nothing, as one from a tape that was tampered with can, is below every
+    // floor.
+    let mut left = place.steps().wrapping_sub(floor).cast_signed();
     macro_rules! dispatch {
         ($(
             $(#[doc = $doc:literal])+
@@ -478,11 +529,14 @@ pub(crate) fn reverse<const ONE: bool>(
             [$($picture:tt)*] $class:ident $(($payload:tt))? $family:ident;
         )*) => {
             'out: loop {
-                let effect = 'operands: loop {
-                    // Before the first instruction the index wraps, and is none of the code's.
-                    let at = run.place.pc.wrapping_sub(1);
-                    let Some(&instr) = run.code.get(at) else { break 'out Exit::Slow };
-                    match instr {
+                // Before the first instruction the index wraps, and is none of the code's.
+                let mut at = pc.wrapping_sub(1);
+                let mut is_loaded = false;
+                let (way, by_jump) = loop {
+                    let Some(&Reversed { instr, beside, jump }) = reversed.get(at) else {
+                        break 'out Exit::Slow;
+                    };
+                    let by_jump = match instr {
                         $(Instr::$ident { $($field,)* } => {
                             reverse_arm!(
                                 op::$ident { $($field,)* },
@@ -490,40 +544,27 @@ pub(crate) fn reverse<const ONE: bool>(
                                 instr,
                                 at,
                                 usize::from(0 $(+ obverse_isa::Operand::as_prefix($field))*),
-                                'operands 'out $family $class $($payload)?
-                            );
+                                is_loaded,
+                                'out $family $class $($payload)?
+                            )
                         })*
-                    }
-                    if ONE {
-                        break 'out Exit::One;
-                    }
-                    if run.place.is_at_or_below(floor) {
-                        break 'out Exit::Bound;
-                    }
+                    };
+                    break if by_jump { (jump, true) } else { (beside, false) };
                 };
-                let (effect, prefix) = effect;
-                let values = &mut run.values;
-                match reverse_with_operands(run.code, borrow!(values), effect, prefix) {
-                    Ok(Way::Beside) => run.place.pc = effect - prefix,
-                    Ok(Way::Named(from)) => {
-                        let join = run.code[effect];
-                        if let Err(exit) = run.undo_jump(join, effect, from) {
-                            break exit;
-                        }
-                    }
-                    Err(exit) => break exit,
+                if ONE || way.steps() >= left {
+                    let way = nearest(code, at, by_jump, if ONE { 0 } else { left });
+                    pc = way.pc();
+                    left = left.wrapping_sub(way.steps());
+                    break if ONE { Exit::One } else { Exit::Bound };
                 }
-                if ONE {
-                    break Exit::One;
-                }
-                if run.place.is_at_or_below(floor) {
-                    break Exit::Bound;
-                }
+                pc = way.pc();
+                left -= way.steps();
             }
         };
     }
     let exit = for_each_op!(dispatch);
-    *place = run.place;
+    let steps = floor.wrapping_add(left.cast_unsigned());
+    *place = Place { pc, offset: steps.wrapping_sub(pc as u64) };
     values.depth = 0;
     exit
 }

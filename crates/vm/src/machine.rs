@@ -1,6 +1,6 @@
 //! The machine: a verified program, its state, and its tape, run in either direction.
 
-use crate::hot::{self, Exit};
+use crate::hot::{self, Exit, Reversed};
 use crate::link::{LinkError, Links};
 use crate::observe::Observer;
 use crate::state::{Direction, Frame, State};
@@ -18,7 +18,7 @@ use xxhash_rust::xxh3::Xxh3;
 pub struct Machine<'p> {
     pub(crate) program: &'p Verified,
     pub(crate) constants: Vec<u64>,
-    ways_back: Vec<u32>,
+    reversed: Vec<Reversed>,
     pub(crate) links: Links,
     pub(crate) state: State,
     pub(crate) tape: Option<Tape>,
@@ -102,7 +102,7 @@ impl<'p> Machine<'p> {
         Ok(Self {
             program,
             constants: module.constants.iter().map(|constant| constant.bits()).collect(),
-            ways_back: hot::ways_back(&module.code),
+            reversed: hot::reversed(&module.code),
             links,
             state,
             tape: Some(Tape::default()),
@@ -331,7 +331,7 @@ impl<'p> Machine<'p> {
         let Some(tape) = &mut self.tape else {
             return Exit::Trap(place.pc, crate::stop::TrapKind::NoTape);
         };
-        let exit = hot::reverse::<ONE>(code, &self.ways_back, &mut values, &mut place, floor, tape);
+        let exit = hot::reverse::<ONE>(code, &self.reversed, &mut values, &mut place, floor, tape);
         self.state.place = place;
         exit
     }

@@ -215,7 +215,9 @@ fn update(module: &Module, start: usize, at: usize, findings: &mut Findings) {
         Instr::AddGlobal { global, .. } | Instr::SubGlobal { global, .. } => {
             (OperandKind::Global, global.index())
         }
-        Instr::AddLocalLocal { local, value } if local == value => {
+        Instr::AddLocalLocal { local, value } | Instr::SubLocalLocal { local, value }
+            if local == value =>
+        {
             findings.at(at, Rule::Updates, "the update reads the variable that it changes");
             return;
         }

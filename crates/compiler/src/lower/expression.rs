@@ -95,8 +95,14 @@ impl Lower<'_> {
             (ExpressionKind::Local(value), false) => {
                 return self.push(Instr::AddLocalLocal { local, value: *value });
             }
+            (ExpressionKind::Local(value), true) => {
+                return self.push(Instr::SubLocalLocal { local, value: *value });
+            }
             (ExpressionKind::Counter(counter), false) => {
                 return self.push(Instr::AddLocalCounter { local, counter: *counter });
+            }
+            (ExpressionKind::Counter(counter), true) => {
+                return self.push(Instr::SubLocalCounter { local, counter: *counter });
             }
             _ => None,
         };
@@ -156,6 +162,10 @@ fn fuse<'e>(
         (Instr::IntMul {}, Local(local), Int(value))
         | (Instr::IntMul {}, Int(value), Local(local)) => {
             (None, Instr::IntMulLocalImmediate { local: *local, value: small(*value)? })
+        }
+        (Instr::IntMul {}, Counter(counter), Int(value))
+        | (Instr::IntMul {}, Int(value), Counter(counter)) => {
+            (None, Instr::IntMulCounterImmediate { counter: *counter, value: small(*value)? })
         }
         (Instr::IntMul {}, _, Int(value)) => {
             (Some(left), Instr::IntMulImmediate { value: small(*value)? })

@@ -106,6 +106,9 @@ pure! {
     IntMulLocalImmediate { local, value }, values => {
         values.push_int(values.local(local).cast_signed().wrapping_mul(i64::from(value)));
     };
+    IntMulCounterImmediate { counter, value }, values => {
+        values.push_int(values.counter(counter).wrapping_mul(i64::from(value)));
+    };
 }
 
 binary! { int -> of_int:

@@ -90,4 +90,9 @@ updates! {
     AddLocalCounter(op, variables)
         variables.local(op.local), variables.values().counter(op.counter).cast_unsigned(),
         wrapping_add / wrapping_sub;
+    SubLocalLocal(op, variables)
+        variables.local(op.local), variables.values().local(op.value), wrapping_sub / wrapping_add;
+    SubLocalCounter(op, variables)
+        variables.local(op.local), variables.values().counter(op.counter).cast_unsigned(),
+        wrapping_sub / wrapping_add;
 }
