@@ -90,6 +90,10 @@ pub enum RecordKind {
     Joints,
     /// The locals, counters and remembered positions of a frame.
     Frame,
+    /// Which task's turn ended, and after how many steps.
+    Switch,
+    /// The tasks that were held when a fork was left.
+    Tasks,
 }
 
 impl RecordKind {
@@ -102,6 +106,8 @@ impl RecordKind {
             Self::Counter => "counter",
             Self::Joints => "joints",
             Self::Frame => "frame",
+            Self::Switch => "switch",
+            Self::Tasks => "tasks",
         }
     }
 }
@@ -162,11 +168,13 @@ pub enum Family {
     Reversal,
     /// The errors that the program has raised.
     Error,
+    /// The branches of a fork, which take turns.
+    Task,
 }
 
 impl Family {
     /// Every family in the order of the table.
-    pub const ALL: [Self; 10] = [
+    pub const ALL: [Self; 11] = [
         Self::Value,
         Self::Variable,
         Self::Flow,
@@ -177,6 +185,7 @@ impl Family {
         Self::Io,
         Self::Reversal,
         Self::Error,
+        Self::Task,
     ];
 
     /// The family's name.
@@ -193,6 +202,7 @@ impl Family {
             Self::Io => "io",
             Self::Reversal => "reversal",
             Self::Error => "error",
+            Self::Task => "task",
         }
     }
 

@@ -95,6 +95,9 @@ macro_rules! family {
     (error) => {
         Family::Error
     };
+    (task) => {
+        Family::Task
+    };
 }
 
 macro_rules! make_instructions {
@@ -277,6 +280,7 @@ impl Instr {
             | Self::JumpUnlessLocalLtLocal { target, .. }
             | Self::ForNext { target, .. } => Some(target),
             Self::ForEnter { exit, .. } => Some(exit),
+            Self::Fork { join } => Some(join),
             _ => None,
         }
     }
@@ -289,7 +293,8 @@ impl Instr {
             | Self::Join { from }
             | Self::JoinAssert { from, .. }
             | Self::ForTop { from, .. }
-            | Self::ForExit { from, .. } => Some(from),
+            | Self::ForExit { from, .. }
+            | Self::ForkJoin { from } => Some(from),
             _ => None,
         }
     }
@@ -297,6 +302,9 @@ impl Instr {
     /// Whether control never passes from this instruction to the next.
     #[must_use]
     pub fn never_falls_through(&self) -> bool {
-        matches!(self, Self::Jump { .. } | Self::Return {} | Self::Halt {})
+        matches!(
+            self,
+            Self::Jump { .. } | Self::Return {} | Self::Halt {} | Self::ForkLeave { .. }
+        )
     }
 }

@@ -88,6 +88,11 @@ impl CodeBuilder {
         at
     }
 
+    /// Let one more jump lead to a place, beside the one that its join names.
+    pub fn lead(&mut self, jump: Mark, to: u32) {
+        self.patch(jump, Label(to));
+    }
+
     /// The last instructions, as long as they are pure and of this statement.
     #[must_use]
     pub fn last_pure(&self) -> &[Instr] {

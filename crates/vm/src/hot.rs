@@ -9,7 +9,7 @@ use crate::class::{AfterForward, Always, Failure, Pure};
 use crate::ops::flow::{Course, Way};
 use crate::stop::TrapKind;
 use crate::values::{Values, Variables};
-use obverse_isa::{CounterId, Instr, Label, for_each_op, op};
+use obverse_isa::{CounterId, Family, Instr, Label, for_each_op, op};
 use obverse_tape::{Record, Recorder, Tape, record};
 
 /// Why a loop returned.
@@ -339,8 +339,8 @@ impl WayBack {
 
 /// A jump that changes nothing but where the run is.
 fn is_plain_jump(instr: Instr) -> bool {
-    instr.jump_target().is_some()
-        && !matches!(instr, Instr::ForEnter { .. } | Instr::ForNext { .. })
+    let is_loop = matches!(instr, Instr::ForEnter { .. } | Instr::ForNext { .. });
+    instr.info().family == Family::Flow && instr.jump_target().is_some() && !is_loop
 }
 
 /// An instruction as a run in reverse meets it, with the ways on from there: beside it, and by the
