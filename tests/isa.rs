@@ -78,7 +78,7 @@ fn an_effect_pushes_nothing_and_knows_the_prefix_that_made_its_operands() {
 
 #[test]
 fn a_class_fits_its_family() {
-    use RecordKind::{Bit, Counter, Frame, Joints, Word};
+    use RecordKind::{Bit, Counter, Frame, Joints, Switch, Tasks, Word};
     for row in OPS {
         let records: &[RecordKind] = match row.family {
             Family::Value | Family::Reversal => &[],
@@ -88,6 +88,7 @@ fn a_class_fits_its_family() {
             Family::Kinematic => &[Joints],
             Family::Sense => &[Word, Joints],
             Family::Io => &[Bit],
+            Family::Task => &[Switch, Tasks],
         };
         match row.class {
             Class::Always => {}
@@ -126,6 +127,8 @@ fn labels_are_targets_or_where_one_comes_from() {
         let expected = match labels[..] {
             [] => (false, false, false),
             [("target" | "exit", _)] => (true, false, false),
+            // Where branches come together: that names the fork, and not who leaves.
+            [("join", _)] => (matches!(instr, Instr::Fork { .. }), false, false),
             [("from", _)] => (false, !is_block_end, is_block_end),
             _ => panic!("{}: more than one label, or one of another name", row.mnemonic),
         };

@@ -37,7 +37,8 @@
 //!
 //! Clauses are `key = value`; other keys are the names of locals of the innermost frame, of
 //! globals, and `stack`, `calls`, `counter N`, `slot NAME`, `joints`, `output N`, `speed`, `tool`,
-//! `raised`, `draws`, `blocks`, `pending`. A `;;` line that begins with no such word goes on with
+//! `raised`, `draws`, `blocks`, `pending`; of forks `turn`, whose turn it is, and `waiting`, where
+//! the other tasks stand. A `;;` line that begins with no such word goes on with
 //! the one above.
 
 mod cell;

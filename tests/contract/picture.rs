@@ -53,6 +53,13 @@ pub(crate) fn of(machine: &Machine<'_>, cell: &Cell) -> Picture {
     put("blocks", vec![u64::from(machine.state().open_blocks())]);
     let pending = state.pending.map_or(0, |(is_reverse, _)| 1 + u64::from(is_reverse));
     put("pending", vec![pending]);
+    let turns = state.forks.iter().map(|fork| u64::from(fork.current));
+    put("turn", turns.collect());
+    let waiting = state.forks.iter().flat_map(|fork| {
+        let others = (0..).zip(&fork.tasks).filter(|(task, _)| *task != fork.current);
+        others.map(|(_, task)| u64::from(task.pc))
+    });
+    put("waiting", waiting.collect());
     put("joints", bits(&state.joints));
     for (bit, level) in state.outputs.iter().enumerate() {
         put(&format!("output {bit}"), vec![u64::from(*level)]);
@@ -61,6 +68,7 @@ pub(crate) fn of(machine: &Machine<'_>, cell: &Cell) -> Picture {
     put("tape bits", tape.bits.iter().map(|&bit| u64::from(bit)).collect());
     put("tape words", tape.words);
     put("tape joints", tape.joints.iter().flat_map(bits).collect());
+    put("tape control", tape.control);
     put("tape dropped", vec![tape.dropped_bits]);
     put("digest", vec![machine.digest(cell)]);
     picture
@@ -93,6 +101,15 @@ pub(crate) fn differences(expected: &Picture, found: &Picture) -> Vec<String> {
         format!("{name} should be {}, and is {}", show(expected.get(name)), show(found.get(name)))
     };
     differing.map(line).collect()
+}
+
+/// The end of a turn: `TASK after STEPS`, and `left` where the fork was.
+fn switch(what: &str) -> Result<u64, String> {
+    let wrong = || format!("`{what}` is not `TASK after STEPS`");
+    let (what, leaves) = what.strip_suffix(" left").map_or((what, 0), |what| (what, 1));
+    let (task, steps) = what.split_once(" after ").ok_or_else(wrong)?;
+    let number = |text: &str| text.parse::<u64>().map_err(|_| wrong());
+    Ok(number(steps)? << 9 | leaves << 8 | number(task)?)
 }
 
 /// What the words of a contract mean.
@@ -140,7 +157,7 @@ impl Words<'_> {
 
     /// The words that a value is made of.
     fn value(&self, key: &str, text: &str) -> Result<Vec<u64>, String> {
-        if key == "at" {
+        if key == "at" || key == "waiting" {
             return self.label(text).map(|pc| vec![u64::from(pc)]);
         }
         if key == "joints" || key.starts_with("slot ") {
@@ -196,11 +213,30 @@ impl Words<'_> {
                 "bit" => ("tape bits", vec![self.word(what)?]),
                 "word" => ("tape words", vec![self.word(what)?]),
                 "joints" => ("tape joints", bits(&self.joints(what)?)),
+                "switch" => ("tape control", vec![switch(what)?]),
+                "held" => ("tape control", vec![self.held(what)?]),
+                "call" => ("tape control", vec![self.call(what)?]),
                 _ => return Err(format!("`{kind}` is no kind of record")),
             };
             picture.entry(stream.to_owned()).or_default().extend(words);
         }
         Ok(())
+    }
+
+    /// Where a task is held: `LABEL`, or `LABEL with CALLS`.
+    fn held(&self, what: &str) -> Result<u64, String> {
+        let (label, calls) = what.split_once(" with ").unwrap_or((what, "0"));
+        let calls: u64 = calls.parse().map_err(|_| format!("`{calls}` is no number"))?;
+        Ok(calls << 33 | u64::from(self.label(label)?))
+    }
+
+    /// A call of a task that is held: `FUNCTION to LABEL`, where the caller goes on.
+    fn call(&self, what: &str) -> Result<u64, String> {
+        let (name, to) = what.split_once(" to ").ok_or("a call is `FUNCTION to LABEL`")?;
+        let mut functions = self.module.functions.iter();
+        let index = functions.position(|function| function.name == name);
+        let index = index.ok_or_else(|| format!("no function is called `{name}`"))?;
+        Ok((index as u64) << 32 | u64::from(self.label(to)?))
     }
 
     /// Make the calls of a picture these functions, outermost first.

@@ -291,20 +291,26 @@ impl<'t> Trial<'t> {
     /// Whether what was recorded is of the kind that the class names.
     fn records_its_class(&self, before: &Picture, after: &Picture) -> Result<(), String> {
         let grown = |stream: &str| after[stream].len() as i64 - before[stream].len() as i64;
-        let grown = [grown("tape bits"), grown("tape words"), grown("tape joints")];
+        let control = grown("tape control");
+        let grown = [grown("tape bits"), grown("tape words"), grown("tape joints"), control];
         let expected = match self.row.class {
-            Class::Always => [0, 0, 0],
-            Class::AfterForward(RecordKind::Bit) => [1, 0, 0],
-            Class::AfterForward(RecordKind::Word) => [0, 1, 0],
-            Class::AfterForward(RecordKind::Counter) => [0, 3, 0],
-            Class::AfterForward(RecordKind::Joints) => [0, 0, 6],
-            // A frame is as large as its function says; a never drops what is there.
-            Class::AfterForward(RecordKind::Frame) | Class::Never(_) => grown,
+            Class::Always => [0, 0, 0, 0],
+            Class::AfterForward(RecordKind::Bit) => [1, 0, 0, 0],
+            Class::AfterForward(RecordKind::Word) => [0, 1, 0, 0],
+            Class::AfterForward(RecordKind::Counter) => [0, 3, 0, 0],
+            Class::AfterForward(RecordKind::Joints) => [0, 0, 6, 0],
+            Class::AfterForward(RecordKind::Switch) => [0, 0, 0, 1],
+            // A frame is as large as its function says, and so are tasks; a never drops what is
+            // there.
+            Class::AfterForward(RecordKind::Frame | RecordKind::Tasks) | Class::Never(_) => grown,
         };
         let lands_on_join = after["at"][0] != before["at"][0] + 1 && self.row.mnemonic != "join";
-        let is_right = grown == expected || lands_on_join && grown == [1, 0, 0];
+        let is_right = grown == expected || lands_on_join && grown == [1, 0, 0, 0];
         is_right.then_some(()).ok_or_else(|| {
-            format!("it recorded {grown:?} bits, words and joints, and its class says {expected:?}")
+            format!(
+                "it recorded {grown:?} bits, words, joints and words on turns, and its class says \
+                 {expected:?}"
+            )
         })
     }
 }

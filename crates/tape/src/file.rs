@@ -11,7 +11,7 @@ use serde::{Deserialize, Serialize};
 
 /// A tape file.
 pub const TAPE: Format =
-    Format { magic: *b"OBVTAPE\0", version: 1, name: "tape", remedy: "record the run again" };
+    Format { magic: *b"OBVTAPE\0", version: 2, name: "tape", remedy: "record the run again" };
 
 /// The content of a tape file.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -52,10 +52,38 @@ pub struct Snapshot {
     /// The act that was begun and not finished: whether it was going in reverse, and the level that
     /// a toggled output had before.
     pub pending: Option<(bool, Option<bool>)>,
+    /// The forks that are open, outermost first.
+    pub forks: Vec<ForkSnapshot>,
     /// Where the joints were, in radians.
     pub joints: [f64; 6],
     /// The levels of the outputs.
     pub outputs: Vec<bool>,
+}
+
+/// An open fork.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct ForkSnapshot {
+    /// The `fork`.
+    pub at: u32,
+    /// How many calls are around it.
+    pub base: u32,
+    /// Whose turn it is.
+    pub current: u8,
+    /// How many steps have been made in this turn.
+    pub turn_steps: u64,
+    /// The tasks by branch; that whose turn it is has nothing of its own here.
+    pub tasks: Vec<TaskSnapshot>,
+}
+
+/// A task that waits for its turn.
+#[derive(Clone, Debug, PartialEq, Default, Serialize, Deserialize)]
+pub struct TaskSnapshot {
+    /// The next instruction.
+    pub pc: u32,
+    /// Whether it has come to its end.
+    pub is_done: bool,
+    /// Its calls, outermost first.
+    pub frames: Vec<FrameSnapshot>,
 }
 
 /// A call under way.

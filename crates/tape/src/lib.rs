@@ -10,6 +10,6 @@ pub mod record;
 pub mod stream;
 pub mod tape;
 
-pub use file::{FrameSnapshot, Snapshot, TapeFile};
+pub use file::{ForkSnapshot, FrameSnapshot, Snapshot, TapeFile, TaskSnapshot};
 pub use record::Record;
 pub use tape::{NoTape, Place, Recorder, Streams, Tape};

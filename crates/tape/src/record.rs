@@ -128,6 +128,75 @@ impl Frame {
     }
 }
 
+/// Whose turn ended, and after how many steps.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Switch {
+    /// The task, by its branch.
+    pub task: u8,
+    /// The steps of the turn.
+    pub steps: u64,
+    /// Whether it left the fork and the other tasks where they were.
+    pub leaves: bool,
+}
+
+impl Switch {
+    /// What a word says.
+    #[must_use]
+    pub fn from_word(word: u64) -> Self {
+        Self { task: word as u8, steps: word >> 9, leaves: word & 0x100 != 0 }
+    }
+
+    /// Push it.
+    pub fn push(&self, recorder: &mut impl Recorder) {
+        recorder.control(self.steps << 9 | u64::from(self.leaves) << 8 | u64::from(self.task));
+    }
+
+    /// Pop the newest.
+    pub fn pop(tape: &mut Tape) -> Option<Self> {
+        tape.control.pop().map(Self::from_word)
+    }
+}
+
+/// Where a task was held when a fork was left. What its calls held is a [`Frame`] each.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct HeldTask {
+    /// The next instruction.
+    pub pc: u32,
+    /// Whether it had come to its end.
+    pub is_done: bool,
+    /// Its calls, outermost first: the function, and where the caller goes on.
+    pub calls: Vec<(u16, u32)>,
+}
+
+/// The tasks that were held when a fork was left, by branch.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Tasks(pub Vec<HeldTask>);
+
+impl Tasks {
+    /// Push it.
+    pub fn push(&self, recorder: &mut impl Recorder) {
+        for task in &self.0 {
+            for (function, return_pc) in &task.calls {
+                recorder.control(u64::from(*function) << 32 | u64::from(*return_pc));
+            }
+            let calls = task.calls.len() as u64;
+            recorder.control(calls << 33 | u64::from(task.is_done) << 32 | u64::from(task.pc));
+        }
+    }
+
+    /// Pop those of a fork with so many branches.
+    pub fn pop(tape: &mut Tape, branches: usize) -> Option<Self> {
+        pop_many(branches, || {
+            let word = tape.control.pop()?;
+            let count = usize::try_from(word >> 33).ok().filter(|&n| n <= tape.control.len())?;
+            let call = |word: u64| ((word >> 32) as u16, word as u32);
+            let calls = pop_many(count, || tape.control.pop().map(call))?;
+            Some(HeldTask { pc: word as u32, is_done: word & 1 << 32 != 0, calls })
+        })
+        .map(Self)
+    }
+}
+
 fn pop_many<T>(count: usize, mut pop: impl FnMut() -> Option<T>) -> Option<Vec<T>> {
     let mut all = (0..count).map(|_| pop()).collect::<Option<Vec<_>>>()?;
     all.reverse();

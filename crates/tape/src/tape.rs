@@ -11,6 +11,8 @@ pub trait Recorder {
     fn word(&mut self, word: u64);
     /// Write a joint configuration.
     fn joints(&mut self, joints: JointConfiguration);
+    /// Write a word on whose turn it was.
+    fn control(&mut self, word: u64);
     /// Whether more has been recorded than may be.
     fn is_full(&self) -> bool;
 }
@@ -27,6 +29,8 @@ impl Recorder for NoTape {
     #[inline(always)]
     fn joints(&mut self, _: JointConfiguration) {}
     #[inline(always)]
+    fn control(&mut self, _: u64) {}
+    #[inline(always)]
     fn is_full(&self) -> bool {
         false
     }
@@ -41,13 +45,15 @@ pub struct Place {
     pub words: u64,
     /// Joint configurations.
     pub joints: u64,
+    /// Words on the turns of tasks.
+    pub control: u64,
 }
 
 impl Place {
     /// The size of the tape up to here, in bits.
     #[must_use]
     pub fn size_bits(&self) -> u64 {
-        self.bits + 64 * self.words + 384 * self.joints
+        self.bits + 64 * (self.words + self.control) + 384 * self.joints
     }
 }
 
@@ -57,6 +63,7 @@ pub struct Tape {
     pub(crate) bits: BitStream,
     pub(crate) words: Stream<u64>,
     pub(crate) joints: Stream<[f64; 6]>,
+    pub(crate) control: Stream<u64>,
     /// What has been recorded and dropped, in bits.
     dropped_bits: u64,
     /// The most full chunks that may be held, each as large as one of words.
@@ -88,10 +95,15 @@ impl Recorder for Tape {
         self.joints.push(joints.0);
     }
 
+    fn control(&mut self, word: u64) {
+        self.control.push(word);
+    }
+
     #[inline(always)]
     fn is_full(&self) -> bool {
         let joints = self.joints.full_chunks() * size_of::<[f64; 6]>() / size_of::<u64>();
-        self.words.full_chunks() + self.bits.full_chunks() + joints > self.limit_chunks
+        let words = self.words.full_chunks() + self.control.full_chunks();
+        words + self.bits.full_chunks() + joints > self.limit_chunks
     }
 }
 
@@ -103,6 +115,7 @@ impl Tape {
             bits: BitStream::default(),
             words: Stream::default(),
             joints: Stream::default(),
+            control: Stream::default(),
             dropped_bits: 0,
             limit_chunks: limit_bytes / (CHUNK * 8),
         }
@@ -115,6 +128,7 @@ impl Tape {
             bits: self.bits.len() as u64,
             words: self.words.len() as u64,
             joints: self.joints.len() as u64,
+            control: self.control.len() as u64,
         }
     }
 
@@ -130,7 +144,10 @@ impl Tape {
         self.bits.truncate(to.bits as usize);
         self.words.truncate(to.words as usize);
         self.joints.truncate(to.joints as usize);
-        self.dropped_bits += before_bits - self.place().size_bits();
+        self.control.truncate(to.control as usize);
+        // What a file says was dropped is not believed.
+        let dropped_bits = before_bits - self.place().size_bits();
+        self.dropped_bits = self.dropped_bits.saturating_add(dropped_bits);
     }
 
     /// Nothing before this can be reversed: drop it.
@@ -142,13 +159,14 @@ impl Tape {
     /// does not count.
     #[must_use]
     pub fn recorded_bits(&self) -> u64 {
-        self.dropped_bits + self.place().size_bits()
+        self.dropped_bits.saturating_add(self.place().size_bits())
     }
 
     /// The memory that is held, in bytes.
     #[must_use]
     pub fn held_bytes(&self) -> usize {
-        self.bits.held_bytes() + self.words.held_bytes() + self.joints.held_bytes()
+        let words = self.words.held_bytes() + self.control.held_bytes();
+        self.bits.held_bytes() + words + self.joints.held_bytes()
     }
 
     /// The newest bit.
@@ -169,6 +187,12 @@ impl Tape {
         self.joints.last()
     }
 
+    /// The newest word on the turns of tasks.
+    #[must_use]
+    pub fn newest_control(&self) -> Option<u64> {
+        self.control.last()
+    }
+
     /// Every record as plain data, oldest first.
     #[must_use]
     pub fn streams(&self) -> Streams {
@@ -176,6 +200,7 @@ impl Tape {
             bits: self.bits.iter().collect(),
             words: self.words.iter().collect(),
             joints: self.joints.iter().collect(),
+            control: self.control.iter().collect(),
             dropped_bits: self.dropped_bits,
         }
     }
@@ -187,6 +212,7 @@ impl Tape {
             bits: streams.bits.iter().copied().collect(),
             words: streams.words.iter().copied().collect(),
             joints: streams.joints.iter().copied().collect(),
+            control: streams.control.iter().copied().collect(),
             dropped_bits: streams.dropped_bits,
             limit_chunks: DEFAULT_LIMIT_BYTES / (CHUNK * 8),
         }
@@ -202,6 +228,8 @@ pub struct Streams {
     pub words: Vec<u64>,
     /// Joint configurations in radians.
     pub joints: Vec<[f64; 6]>,
+    /// Words on the turns of tasks.
+    pub control: Vec<u64>,
     /// What was recorded before and dropped, in bits.
     pub dropped_bits: u64,
 }

@@ -9,7 +9,7 @@ use obverse_bytecode::{
     Verified, encode, fingerprint, verify,
 };
 use obverse_isa::{Instr, Type};
-use obverse_tape::{FrameSnapshot, Snapshot, Streams, TapeFile};
+use obverse_tape::{ForkSnapshot, FrameSnapshot, Snapshot, Streams, TapeFile};
 use obverse_vm::{Direction, Machine};
 
 /// The most alterations of one thing.
@@ -170,7 +170,8 @@ pub fn recording(u: &mut Unstructured<'_>) -> Result<TapeFile> {
     let (mut state, mut streams) = recorded(&program, steps);
     for (choice, random) in choices {
         let u = &mut Unstructured::new(&random);
-        match choice % 4 {
+        match choice % 5 {
+            4 => alter_fork(u, &mut state.forks)?,
             0 => alter_state(u, &mut state)?,
             1 => alter_frame(u, &mut state.frames)?,
             2 => alter_place(u, program.module(), &mut state)?,
@@ -246,8 +247,36 @@ fn alter_frame(u: &mut Unstructured<'_>, frames: &mut Vec<FrameSnapshot>) -> Res
     Ok(())
 }
 
-fn alter_streams(u: &mut Unstructured<'_>, streams: &mut Streams) -> Result<()> {
+fn alter_fork(u: &mut Unstructured<'_>, forks: &mut Vec<ForkSnapshot>) -> Result<()> {
+    if forks.is_empty() {
+        return Ok(());
+    }
+    let at = u.choose_index(forks.len())?;
+    let fork = &mut forks[at];
+    let task = u.choose_index(fork.tasks.len().max(1))?;
     match u.int_in_range(0..=7_u8)? {
+        0 => fork.at = near(u, fork.at)?,
+        1 => fork.base = near(u, fork.base)?,
+        2 => fork.current = u.int_in_range(0..=4)?,
+        3 => fork.turn_steps = extreme(u)?,
+        4 => drop(fork.tasks.pop()),
+        5 => {
+            let again = forks[at].clone();
+            forks.resize(u.int_in_range(0..=100)?, again);
+        }
+        choice => {
+            let Some(task) = fork.tasks.get_mut(task) else { return Ok(()) };
+            match choice {
+                6 => task.pc = near(u, task.pc)?,
+                _ => task.is_done = !task.is_done,
+            }
+        }
+    }
+    Ok(())
+}
+
+fn alter_streams(u: &mut Unstructured<'_>, streams: &mut Streams) -> Result<()> {
+    match u.int_in_range(0..=9_u8)? {
         0 => drop(streams.bits.pop()),
         1 => drop(streams.words.pop()),
         2 => drop(streams.joints.pop()),
@@ -260,6 +289,8 @@ fn alter_streams(u: &mut Unstructured<'_>, streams: &mut Streams) -> Result<()> 
             }
         }
         6 => streams.joints.push([f64::from_bits(extreme(u)?); 6]),
+        7 => drop(streams.control.pop()),
+        8 => alter_word(u, &mut streams.control)?,
         _ => alter_word(u, &mut streams.words)?,
     }
     Ok(())

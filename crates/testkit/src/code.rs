@@ -33,6 +33,8 @@ const JOINTS_LOCAL: LocalId = LocalId(INTS + REALS + BOOLS);
 /// Written by nothing but the loops and branches that own them: a counter and a flag a depth.
 const OWNED_FROM: u8 = JOINTS_LOCAL.0 + 1;
 const MAX_DEPTH: u8 = 4;
+/// How many branches a fork has at the most: each has variables and counters of its own.
+const LANES: u8 = 3;
 const FUNCTIONS: u16 = 4;
 const GLOBAL_INTS: u16 = 2;
 
@@ -54,6 +56,7 @@ pub fn module(u: &mut Unstructured<'_>, options: Options) -> Result<Module> {
             depth: 0,
             breaks: Vec::new(),
             in_block: false,
+            lane: None,
         };
         let statements = body.u.int_in_range(1..=7)?;
         body.statements(statements)?;
@@ -76,7 +79,7 @@ fn function(index: u16, first: u32, end: u32) -> Function {
         .chain(of(Type::Real, REALS))
         .chain(of(Type::Bool, BOOLS))
         .chain([Type::Joints])
-        .chain((0..MAX_DEPTH).flat_map(|_| [Type::Int, Type::Bool]));
+        .chain((0..MAX_DEPTH * LANES).flat_map(|_| [Type::Int, Type::Bool]));
     let locals = types
         .enumerate()
         .map(|(at, of_type)| Variable { name: format!("v{at}"), of_type })
@@ -87,7 +90,7 @@ fn function(index: u16, first: u32, end: u32) -> Function {
         kind,
         parameters,
         locals,
-        counters: MAX_DEPTH,
+        counters: MAX_DEPTH * LANES,
         slots: vec!["p0".to_owned(), "p1".to_owned()],
         first,
         end,
@@ -147,6 +150,14 @@ struct Body<'b, 'u> {
     /// For each loop around: the jumps out of it.
     breaks: Vec<Vec<Mark>>,
     in_block: bool,
+    /// The branch of a fork that this is in, and how deep the fork is.
+    lane: Option<Lane>,
+}
+
+#[derive(Clone, Copy)]
+struct Lane {
+    number: u8,
+    fork_depth: u8,
 }
 
 impl Body<'_, '_> {
@@ -170,12 +181,33 @@ impl Body<'_, '_> {
         Ok(LocalId(INTS + REALS + self.pick(BOOLS)?))
     }
 
+    /// What this depth of this branch has for itself, by number.
+    fn own(&self) -> u8 {
+        self.own_at(self.depth)
+    }
+
+    /// The same for a depth around this one.
+    fn own_at(&self, depth: u8) -> u8 {
+        let lane = self.lane.filter(|lane| depth >= lane.fork_depth);
+        depth + MAX_DEPTH * lane.map_or(0, |lane| lane.number)
+    }
+
+    fn counter_around(&mut self) -> Result<CounterId> {
+        let depth = self.pick(self.depth)?;
+        Ok(CounterId(self.own_at(depth)))
+    }
+
+    /// Whether this is a branch beside one that moves and calls.
+    fn is_beside(&self) -> bool {
+        self.lane.is_some_and(|lane| lane.number > 0)
+    }
+
     fn owned_counter(&self) -> LocalId {
-        LocalId(OWNED_FROM + 2 * self.depth)
+        LocalId(OWNED_FROM + 2 * self.own())
     }
 
     fn owned_flag(&self) -> LocalId {
-        LocalId(OWNED_FROM + 2 * self.depth + 1)
+        LocalId(OWNED_FROM + 2 * self.own() + 1)
     }
 
     fn small(&mut self) -> Result<i32> {
@@ -191,7 +223,7 @@ impl Body<'_, '_> {
 
     fn statement(&mut self) -> Result<()> {
         let can_nest = self.depth < MAX_DEPTH;
-        match self.pick(20)? {
+        match self.pick(21)? {
             0 | 1 => self.store(),
             2 | 3 => self.update(),
             4..=7 => self.act(),
@@ -210,6 +242,7 @@ impl Body<'_, '_> {
                 self.code.push(op::Checkpoint { checkpoint: CheckpointId(0) });
                 Ok(())
             }
+            20 if can_nest && self.lane.is_none() => self.fork(),
             _ => self.update(),
         }
     }
@@ -221,7 +254,7 @@ impl Body<'_, '_> {
             0 => drop(self.small().map(|value| self.code.push(op::PushInt { value }))?),
             1 => drop(self.code.push(op::PushConstant { constant: ConstantId(1) })),
             2 if self.depth > 0 => {
-                let counter = CounterId(self.pick(self.depth)?);
+                let counter = self.counter_around()?;
                 match self.pick(3)? {
                     0 => self.code.push(op::PushCounter { counter }),
                     1 => self.code.push(op::IntRemCounterImmediate { counter, value: 3 }),
@@ -448,7 +481,7 @@ impl Body<'_, '_> {
                 }
             }
             5 if self.depth > 0 => {
-                let counter = CounterId(self.pick(self.depth)?);
+                let counter = self.counter_around()?;
                 if self.flip()? {
                     self.code.push(op::AddLocalCounter { local, counter });
                 } else {
@@ -483,7 +516,9 @@ impl Body<'_, '_> {
 
     fn act(&mut self) -> Result<()> {
         let bit = Bit(u16::from(self.pick(8)?));
-        match self.pick(12)? {
+        // A move back to where the program was last asks that no other branch moves.
+        let first = if self.is_beside() { 8 } else { 0 };
+        match self.u.int_in_range(first..=11)? {
             0 => {
                 self.joints()?;
                 self.code.push(op::MoveJoint { prefix: P });
@@ -555,7 +590,8 @@ impl Body<'_, '_> {
     fn sense(&mut self) -> Result<()> {
         let bit = Bit(u16::from(self.pick(8)?));
         let (real, bool) = (self.real_local()?, self.bool_local()?);
-        match self.pick(8)? {
+        let first = if self.is_beside() { 4 } else { 0 };
+        match self.u.int_in_range(first..=7)? {
             0 => drop(self.code.push(op::SenseInput { local: bool, bit })),
             1 => drop(self.code.push(op::SenseForce { local: real })),
             choice @ 2..=3 => {
@@ -715,7 +751,7 @@ impl Body<'_, '_> {
     }
 
     fn counted_loop(&mut self) -> Result<()> {
-        let counter = CounterId(self.depth);
+        let counter = CounterId(self.own());
         let first = self.small()?;
         let value = first + self.u.int_in_range(-1..=3)?;
         self.code.push(op::PushInt { value: first });
@@ -750,7 +786,7 @@ impl Body<'_, '_> {
     fn call(&mut self) -> Result<()> {
         // Later functions only, so that calls end; few, so that they end soon.
         let next = self.index + 1;
-        if next >= FUNCTIONS || self.depth > 1 {
+        if next >= FUNCTIONS || self.depth > 1 || self.is_beside() {
             return self.update();
         }
         let function = FunctionId(self.u.int_in_range(next..=FUNCTIONS - 1)?);
@@ -759,6 +795,29 @@ impl Body<'_, '_> {
             self.int(1, None)?;
         }
         self.code.push(op::Call { prefix: P, function });
+        Ok(())
+    }
+
+    fn fork(&mut self) -> Result<()> {
+        let fork = self.code.jump(|join| op::Fork { join });
+        let breaks = std::mem::take(&mut self.breaks);
+        let mut leaves = Vec::new();
+        for number in 0..self.u.int_in_range(1..=LANES)? {
+            if number > 0 {
+                self.code.push(op::ForkNext {});
+            }
+            self.lane = Some(Lane { number, fork_depth: self.depth });
+            self.nested()?;
+            if self.u.ratio(1_u8, 4)? {
+                let goes_on = self.conditional()?;
+                leaves.push(self.code.jump(|join| op::ForkLeave { join }));
+                self.code.join(goes_on, |from| op::Land { from });
+            }
+        }
+        self.lane = None;
+        self.breaks = breaks;
+        let join = self.code.join(fork, |from| op::ForkJoin { from });
+        leaves.into_iter().for_each(|leave| self.code.lead(leave, join));
         Ok(())
     }
 

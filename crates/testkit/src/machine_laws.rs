@@ -10,7 +10,7 @@ use crate::code::{self, Options};
 use arbitrary::{Result, Unstructured};
 use obverse_bytecode::{Module, Verified, decode, encode, verify};
 use obverse_isa::{Class, Family, Instr, RecordKind};
-use obverse_tape::Place;
+use obverse_tape::{ForkSnapshot, FrameSnapshot, Place};
 use obverse_vm::{Direction, Limits, Machine, Stop};
 use obverse_workcell::Safety;
 
@@ -118,6 +118,7 @@ pub fn parsimony(u: &mut Unstructured<'_>) -> Result<bool> {
         let before = picture(&machine, &cell).1;
         let pc = machine.state().pc() as usize;
         let (instr, commands) = (module.code[pc], machine.commands());
+        let (turn, held) = (machine.state().branches(), machine.snapshot(&cell).forks);
         if !step(&mut machine, Direction::Forward, &mut cell) {
             break;
         }
@@ -128,12 +129,29 @@ pub fn parsimony(u: &mut Unstructured<'_>) -> Result<bool> {
         if landed && matches!(module.code[went_on_at - 1], Instr::Join { .. }) {
             expected += 1;
         }
+        // An act may end a turn, which leaves a switch.
+        let ended_turn = instr.info().family != Family::Task && machine.state().branches() != turn;
+        expected += 64 * u64::from(ended_turn) + held_bits(module, held.last(), &instr);
         let recorded = after.size_bits() - before.size_bits();
         assert_eq!(recorded, expected, "{} at {pc}", instr.info().mnemonic);
         let commanded = machine.commands() > commands;
         assert_eq!(commanded, instr.info().family.commands_workcell(), "{instr:?}");
     }
     Ok(true)
+}
+
+/// What the tasks hold that a `fork.leave` leaves where they are.
+fn held_bits(module: &Module, fork: Option<&ForkSnapshot>, instr: &Instr) -> u64 {
+    let (Some(fork), Instr::ForkLeave { .. }) = (fork, instr) else { return 0 };
+    let frames = fork.tasks.iter().flat_map(|task| &task.frames);
+    let of_frame = |frame: &FrameSnapshot| 64 + frame_bits(module, usize::from(frame.function));
+    64 * (fork.tasks.len() as u64 + 1) + frames.map(of_frame).sum::<u64>()
+}
+
+fn frame_bits(module: &Module, function: usize) -> u64 {
+    let function = &module.functions[function];
+    let words = function.locals.len() + 3 * usize::from(function.counters);
+    64 * words as u64 + 384 * function.slots.len() as u64
 }
 
 fn expected_bits(module: &Module, state: &obverse_vm::State, instr: &Instr) -> u64 {
@@ -148,10 +166,10 @@ fn expected_bits(module: &Module, state: &obverse_vm::State, instr: &Instr) -> u
             let Instr::Call { function, .. } = module.code[call] else {
                 panic!("a return goes on behind its call");
             };
-            let function = &module.functions[function.index()];
-            let words = function.locals.len() + 3 * usize::from(function.counters);
-            64 * words as u64 + 384 * function.slots.len() as u64
+            frame_bits(module, function.index())
         }
+        Class::AfterForward(RecordKind::Switch) => 64,
+        Class::AfterForward(RecordKind::Tasks) => 0,
     }
 }
 

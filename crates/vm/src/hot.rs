@@ -46,6 +46,11 @@ impl Place {
         self.pc = to + 1;
     }
 
+    /// Stand before an instruction after so many steps.
+    pub(crate) fn stand_at(&mut self, pc: usize, steps: u64) {
+        *self = Self { pc, offset: steps.wrapping_sub(pc as u64) };
+    }
+
     /// Undo a jump: from behind the instruction at `landed` to behind the one at `from`.
     #[inline(always)]
     pub(crate) fn jump_reverse(&mut self, landed: usize, from: usize) {
@@ -564,7 +569,7 @@ pub(crate) fn reverse<const ONE: bool>(
     }
     let exit = for_each_op!(dispatch);
     let steps = floor.wrapping_add(left.cast_unsigned());
-    *place = Place { pc, offset: steps.wrapping_sub(pc as u64) };
+    place.stand_at(pc, steps);
     values.depth = 0;
     exit
 }

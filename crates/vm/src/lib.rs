@@ -23,6 +23,7 @@ mod snapshot;
 pub mod state;
 mod step;
 pub mod stop;
+mod task;
 pub mod values;
 mod written;
 

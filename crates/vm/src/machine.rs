@@ -6,10 +6,12 @@ use crate::observe::Observer;
 use crate::state::{Direction, Frame, State};
 use crate::step::{Host, Outcome};
 use crate::stop::Stop;
+use crate::task::{self, Branches};
 use obverse_bytecode::Verified;
 use obverse_isa::Class;
 use obverse_tape::{NoTape, Tape};
 use obverse_workcell::Workcell;
+use std::collections::BTreeMap;
 use xxhash_rust::xxh3::Xxh3;
 
 /// A reversible machine. The workcell is lent to it for each run, so that whoever drives the
@@ -19,6 +21,8 @@ pub struct Machine<'p> {
     pub(crate) program: &'p Verified,
     pub(crate) constants: Vec<u64>,
     reversed: Vec<Reversed>,
+    /// The branches of each fork.
+    pub(crate) branches: BTreeMap<u32, Branches>,
     pub(crate) links: Links,
     pub(crate) state: State,
     pub(crate) tape: Option<Tape>,
@@ -98,11 +102,13 @@ impl<'p> Machine<'p> {
             pending: None,
             open_blocks: 0,
             compensations: Vec::new(),
+            forks: Vec::new(),
         };
         Ok(Self {
             program,
             constants: module.constants.iter().map(|constant| constant.bits()).collect(),
             reversed: hot::reversed(&module.code),
+            branches: task::branches(&module.code),
             links,
             state,
             tape: Some(Tape::default()),
@@ -325,6 +331,12 @@ impl<'p> Machine<'p> {
         if self.state.depth > 0 {
             return Exit::Slow;
         }
+        // What was before this turn was another task's.
+        let turn_began = self.turn_began();
+        if turn_began.is_some_and(|began| self.state.steps() <= began) {
+            return Exit::Slow;
+        }
+        let floor = floor.max(turn_began.unwrap_or(0));
         let code = &self.program.module().code;
         let mut place = self.state.place;
         let mut values = values!(self);

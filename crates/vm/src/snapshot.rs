@@ -4,10 +4,11 @@ use crate::hot::Place;
 use crate::link::Links;
 use crate::machine::Machine;
 use crate::state::{Direction, Frame, MAX_FRAMES, Pending};
+use crate::task::{Fork, Task, may_wait};
 use obverse_bytecode::{Module, Verified};
 use obverse_geometry::JointConfiguration;
 use obverse_isa::{ErrorId, Instr};
-use obverse_tape::{FrameSnapshot, Snapshot, Streams, Tape, record};
+use obverse_tape::{ForkSnapshot, FrameSnapshot, Snapshot, Streams, Tape, TaskSnapshot, record};
 use obverse_workcell::{Shadow, Workcell};
 use std::fmt;
 
@@ -69,14 +70,18 @@ impl<'p> Machine<'p> {
     fn state_as_data(&self, cell: &dyn Workcell) -> Snapshot {
         let state = &self.state;
         let module = self.program.module();
-        let frame = |frame: &Frame| {
-            let saved = frame.save(&module.functions[usize::from(frame.function)]);
-            FrameSnapshot {
-                function: frame.function,
-                return_pc: frame.return_pc,
-                words: saved.words,
-                positions: saved.joints.iter().map(|joints| joints.0).collect(),
-            }
+        let frame = |frame: &Frame| frame_as_data(module, frame);
+        let task = |task: &Task| TaskSnapshot {
+            pc: task.pc,
+            is_done: task.is_done,
+            frames: task.frames.iter().map(frame).collect(),
+        };
+        let fork = |fork: &Fork| ForkSnapshot {
+            at: fork.at,
+            base: fork.base as u32,
+            current: fork.current as u8,
+            turn_steps: state.steps().wrapping_sub(fork.turn_began),
+            tasks: fork.tasks.iter().map(task).collect(),
         };
         let pending =
             |pending: Pending| (pending.direction == Direction::Reverse, pending.level_before);
@@ -90,6 +95,7 @@ impl<'p> Machine<'p> {
             raised: state.raised.iter().map(|error| error.0).collect(),
             draws: state.draws,
             pending: state.pending.map(pending),
+            forks: state.forks.iter().map(fork).collect(),
             joints: cell.joints().0,
             outputs: (0..cell.output_count()).map(|bit| cell.output(bit)).collect(),
         }
@@ -126,7 +132,7 @@ impl<'p> Machine<'p> {
         state.settings = snapshot.settings;
         state.raised = snapshot.raised.iter().map(|&error| ErrorId(error)).collect();
         state.draws = snapshot.draws;
-        state.open_blocks = open_blocks(module, snapshot);
+        state.open_blocks = open_blocks(module, &snapshot.frames, snapshot.pc);
         state.pending = snapshot.pending.map(|(is_reverse, level_before)| Pending {
             direction: if is_reverse { Direction::Reverse } else { Direction::Forward },
             level_before,
@@ -137,14 +143,83 @@ impl<'p> Machine<'p> {
             settings: snapshot.settings,
         };
         machine.tape = Some(Tape::from_streams(streams));
+        let forks: Option<Vec<Fork>> =
+            snapshot.forks.iter().map(|fork| restore_fork(&machine, snapshot, fork)).collect();
+        machine.state.forks = forks.ok_or(SnapshotError { what: "fork" })?;
         Ok(machine)
     }
 }
 
-/// How many blocks with a reverse of their own are open around the calls of a snapshot.
-fn open_blocks(module: &Module, snapshot: &Snapshot) -> u32 {
-    let calls = snapshot.frames.iter().skip(1).map(|frame| frame.return_pc - 1);
-    calls.chain([snapshot.pc]).map(|pc| blocks_around(module, pc)).sum()
+fn frame_as_data(module: &Module, frame: &Frame) -> FrameSnapshot {
+    let saved = frame.save(&module.functions[usize::from(frame.function)]);
+    FrameSnapshot {
+        function: frame.function,
+        return_pc: frame.return_pc,
+        words: saved.words,
+        positions: saved.joints.iter().map(|joints| joints.0).collect(),
+    }
+}
+
+/// A fork of a snapshot, if it can be open where the snapshot is.
+fn restore_fork(machine: &Machine<'_>, snapshot: &Snapshot, fork: &ForkSnapshot) -> Option<Fork> {
+    let module = machine.program.module();
+    let branches = machine.branches.get(&fork.at)?;
+    let base = usize::try_from(fork.base).ok()?;
+    let (around, inner) = snapshot.frames.split_at_checked(base)?;
+    let home = usize::from(around.last()?.function);
+    let current = usize::from(fork.current);
+    let is_whole = module.function_at(fork.at) == Some(home)
+        && fork.tasks.len() == branches.ends.len()
+        && snapshot.steps >= fork.turn_steps;
+    let here = inner.first().map_or(snapshot.pc, |frame| frame.return_pc.saturating_sub(1));
+    let (start, end) = *branches.ends.get(current)?;
+    if !is_whole || !(start..=end).contains(&here) {
+        return None;
+    }
+    let tasks = fork.tasks.iter().zip(&branches.ends).enumerate();
+    let tasks: Option<Vec<Task>> = tasks
+        .map(|(index, (task, ends))| match index == current {
+            true => (*task == TaskSnapshot::default()).then(Task::default),
+            false => restore_task(module, home, task, *ends),
+        })
+        .collect();
+    Some(Fork {
+        at: fork.at,
+        base,
+        current,
+        turn_began: snapshot.steps - fork.turn_steps,
+        open_blocks: open_blocks(module, around, fork.at),
+        compensations: 0,
+        tasks: tasks?,
+    })
+}
+
+fn restore_task(
+    module: &Module,
+    home: usize,
+    task: &TaskSnapshot,
+    ends: (u32, u32),
+) -> Option<Task> {
+    let calls = task.frames.iter().map(|frame| (frame.function, frame.return_pc));
+    let place = (task.pc, task.is_done);
+    let is_whole = |frame: &FrameSnapshot| {
+        let declared = &module.functions[usize::from(frame.function)];
+        (frame.words.len(), frame.positions.len()) == Frame::saved_size(declared)
+    };
+    let fits = task.frames.len() <= MAX_FRAMES
+        && may_wait(module, home, place, calls, ends)
+        && task.frames.iter().all(is_whole);
+    fits.then(|| Task {
+        pc: task.pc,
+        is_done: task.is_done,
+        frames: task.frames.iter().map(|frame| restore_frame(module, frame)).collect(),
+    })
+}
+
+/// How many blocks with a reverse of their own are open around these calls and an instruction.
+fn open_blocks(module: &Module, frames: &[FrameSnapshot], pc: u32) -> u32 {
+    let calls = frames.iter().skip(1).map(|frame| frame.return_pc - 1);
+    calls.chain([pc]).map(|pc| blocks_around(module, pc)).sum()
 }
 
 /// How many blocks with a reverse of their own are open before an instruction.

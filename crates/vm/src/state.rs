@@ -1,6 +1,7 @@
 //! The state of a machine: all that a program can observe or command, but for the workcell's part.
 
 use crate::hot::Place;
+use crate::task::Fork;
 use crate::values::{Settings, Words};
 use obverse_bytecode::Function;
 use obverse_geometry::JointConfiguration;
@@ -75,6 +76,8 @@ pub struct State {
     /// How many blocks with a reverse of their own are open: their starts must stay on the tape.
     pub(crate) open_blocks: u32,
     pub(crate) compensations: Vec<Compensation>,
+    /// The forks that are open, outermost first.
+    pub(crate) forks: Vec<Fork>,
 }
 
 impl Frame {
@@ -119,6 +122,14 @@ impl Frame {
     /// How many words and joint configurations are saved when a frame of a function dies.
     pub(crate) fn saved_size(function: &Function) -> (usize, usize) {
         (Self::used(function).count(), function.slots.len())
+    }
+
+    /// Every word of what it is and holds.
+    pub(crate) fn each_word(&self, functions: &[Function], sink: &mut dyn FnMut(u64)) {
+        sink(u64::from(self.function) << 32 | u64::from(self.return_pc));
+        let function = &functions[usize::from(self.function)];
+        Self::used(function).map(|slot| self.words.slots[slot]).for_each(&mut *sink);
+        self.positions.iter().flat_map(JointConfiguration::bits).for_each(&mut *sink);
     }
 
     /// A local variable.
@@ -202,17 +213,26 @@ impl State {
         !self.compensations.is_empty()
     }
 
+    /// The branches whose turns it is, by fork, outermost first.
+    #[must_use]
+    pub fn branches(&self) -> Vec<usize> {
+        self.forks.iter().map(|fork| fork.current).collect()
+    }
+
+    /// How many calls are under way, those of tasks that wait included.
+    pub(crate) fn call_count(&self) -> usize {
+        let waiting = self.forks.iter().flat_map(|fork| &fork.tasks);
+        self.frames.len() + waiting.map(|task| task.frames.len()).sum::<usize>()
+    }
+
     /// Every word of the state, in an order that depends on the state alone.
     pub(crate) fn each_word(&self, functions: &[Function], sink: &mut dyn FnMut(u64)) {
         sink(self.place.pc as u64);
         sink(u64::from(self.depth));
         self.operands().iter().copied().for_each(&mut *sink);
-        for frame in &self.frames {
-            sink(u64::from(frame.function) << 32 | u64::from(frame.return_pc));
-            let function = &functions[usize::from(frame.function)];
-            Frame::used(function).map(|slot| frame.words.slots[slot]).for_each(&mut *sink);
-            frame.positions.iter().flat_map(JointConfiguration::bits).for_each(&mut *sink);
-        }
+        self.frames.iter().for_each(|frame| frame.each_word(functions, sink));
+        sink(self.forks.len() as u64);
+        self.forks.iter().for_each(|fork| fork.each_word(self.steps(), functions, sink));
         self.globals.iter().copied().for_each(&mut *sink);
         self.settings.into_iter().for_each(&mut *sink);
         sink(self.raised.len() as u64);

@@ -9,7 +9,7 @@ use crate::hot::{self, Exit};
 use crate::machine::{Machine, values};
 use crate::observe::{Event, Observer};
 use crate::ops::acts::Acts;
-use crate::state::{Compensation, Direction, Frame, MAX_FRAMES, Pending};
+use crate::state::{Compensation, Direction, Frame, MAX_FRAMES, Pending, State};
 use crate::stop::{Refusal, Stop, Trap, TrapKind};
 use obverse_isa::{Class, FunctionId, Instr, ReasonId, for_each_op, op};
 use obverse_tape::{NoTape, Record, record};
@@ -107,6 +107,10 @@ impl Machine<'_> {
                 self.state.open_blocks = self.state.open_blocks.saturating_sub(1);
                 self.advance()
             }
+            Instr::Fork { .. }
+            | Instr::ForkNext {}
+            | Instr::ForkJoin { .. }
+            | Instr::ForkLeave { .. } => self.task_forward(at),
             _ => self.finish_forward(at, host, at + 1),
         }
     }
@@ -121,6 +125,7 @@ impl Machine<'_> {
         self.state.depth = 0;
         self.state.place.pc = next;
         self.tell(Direction::Forward, effect, report, host);
+        self.end_turn(instr);
         match instr {
             Instr::ErrorRaise { error } => Err(Stop::Raised { error, pc: effect as u32 }),
             _ => Ok(()),
@@ -136,6 +141,9 @@ impl Machine<'_> {
         if self.state.depth > 0 {
             self.state.place.pc = self.statement_start(self.state.place.pc);
             self.state.depth = 0;
+            return Ok(());
+        }
+        if self.turn_back()? {
             return Ok(());
         }
         let Some(at) = self.state.place.pc.checked_sub(1) else { return Err(Stop::AtStart) };
@@ -159,6 +167,7 @@ impl Machine<'_> {
                 self.state.place.pc = at;
                 Ok(())
             }
+            Instr::ForkJoin { from } => self.join_reverse(at, from.0),
             Instr::BlockReplace { function, .. } if !self.is_muted => {
                 self.compensate(at, function, host)
             }
@@ -412,7 +421,7 @@ impl Machine<'_> {
     }
 
     fn call(&mut self, at: usize, function: FunctionId, host: &mut Host<'_>) -> Outcome {
-        if self.state.frames.len() >= MAX_FRAMES {
+        if self.state.call_count() >= MAX_FRAMES {
             return Err(self.trapped(at, TrapKind::CallDepth));
         }
         let declared = &self.program.module().functions[function.index()];
@@ -478,7 +487,7 @@ impl Machine<'_> {
     }
 
     fn return_reverse(&mut self, at: usize, function: FunctionId, host: &mut Host<'_>) -> Outcome {
-        if self.state.frames.len() >= MAX_FRAMES {
+        if self.state.call_count() >= MAX_FRAMES {
             return Err(Stop::Trap(Trap { pc: at as u32, kind: TrapKind::Foreign }));
         }
         let declared = &self.program.module().functions[function.index()];
@@ -510,20 +519,20 @@ impl Machine<'_> {
 
     /// Reverse, commanding nothing, until the instruction before this place in this frame is met.
     fn reverse_muted(&mut self, until: usize, host: &mut Host<'_>) -> Outcome {
-        let frames = self.state.frames.len();
+        let depth = |state: &State| (state.frames.len(), state.forks.len());
+        let outer = depth(&self.state);
+        let is_there = |state: &State| state.place.pc == until + 1 && depth(state) == outer;
         let floor = self.state.steps().saturating_sub(self.believed_steps);
         self.is_muted = true;
         let mut outcome = Ok(());
-        while outcome.is_ok()
-            && !(self.state.place.pc == until + 1 && self.state.frames.len() == frames)
-        {
+        while outcome.is_ok() && !is_there(&self.state) {
             outcome = match self.hot_reverse::<false>(floor) {
                 Exit::Trap(at, kind) => Err(self.trapped(at, kind)),
-                Exit::Bound => Err(self.trapped(until, TrapKind::Foreign)),
-                _ if self.state.place.pc == until + 1 && self.state.frames.len() == frames => {
-                    Ok(())
+                Exit::Bound if self.state.steps() <= floor => {
+                    Err(self.trapped(until, TrapKind::Foreign))
                 }
-                _ => self.slow_reverse(host),
+                Exit::Slow if !is_there(&self.state) => self.slow_reverse(host),
+                _ => Ok(()),
             };
         }
         self.is_muted = false;
@@ -532,7 +541,7 @@ impl Machine<'_> {
 
     /// Going in reverse into a block that another one takes the place of: call that one.
     fn compensate(&mut self, at: usize, function: FunctionId, host: &mut Host<'_>) -> Outcome {
-        if self.state.frames.len() >= MAX_FRAMES {
+        if self.state.call_count() >= MAX_FRAMES {
             return Err(Stop::Trap(Trap { pc: at as u32, kind: TrapKind::CallDepth }));
         }
         if self.tape.is_none() {

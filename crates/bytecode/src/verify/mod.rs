@@ -22,18 +22,27 @@
 //! 7. *Updates*: the operand of an update does not read what is updated.
 //! 8. *Blocks*: `block.begin` and its end nest, and nothing jumps in or out.
 //! 9. *Source map*: ascending, within the files.
+//! 10. *Tasks*: `fork`, `fork.next` and `fork.join` nest; a fork has at most [`MAX_BRANCHES`]
+//!     branches; nothing jumps into or out of one; `fork.leave` names the join of the innermost
+//!     fork that holds it, from within no block of its own; counted loops of different branches
+//!     have different counters, since the frame is theirs together.
 //!
 //! What remains possible at run time is a trap that depends on values: a division by zero, a real
 //! that is no integer, an assertion or a requirement that does not hold, calls too deep, a missing
 //! keyframe, a tape that is full. Whether a workcell has what the module names is for linking.
-//! Termination is not promised. Read `code`, then `flow`, then `tables`.
+//! Termination is not promised. Read `code`, then `flow`, then
+//! `nesting`, then `tables`.
 
 mod code;
 mod flow;
+mod nesting;
 mod tables;
 
 use crate::module::Module;
 use std::fmt;
+
+/// The most branches of a fork.
+pub const MAX_BRANCHES: usize = 16;
 
 /// The most operands on the stack at once.
 pub const MAX_OPERANDS: usize = 128;
@@ -75,6 +84,8 @@ pub enum Rule {
     Blocks,
     /// Rule 9.
     SourceMap,
+    /// Rule 10.
+    Tasks,
 }
 
 /// Why a module is refused.

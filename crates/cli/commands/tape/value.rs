@@ -2,6 +2,7 @@
 
 use obverse_bytecode::Module;
 use obverse_isa::{Class, GlobalId, Instr, LocalId, RecordKind, Setting, SpeedId, Type};
+use obverse_tape::record::Switch;
 use obverse_tape::{Place, Tape};
 
 /// The newest record of each stream.
@@ -9,6 +10,7 @@ pub(super) struct Newest {
     bit: Option<bool>,
     word: Option<u64>,
     joints: Option<[f64; 6]>,
+    control: Option<u64>,
 }
 
 impl Newest {
@@ -17,6 +19,7 @@ impl Newest {
             bit: tape.and_then(Tape::newest_bit),
             word: tape.and_then(Tape::newest_word),
             joints: tape.and_then(Tape::newest_joints),
+            control: tape.and_then(Tape::newest_control),
         }
     }
 }
@@ -30,18 +33,30 @@ pub(super) fn words(module: &Module, pc: u32, size: Place, top: &Newest) -> Stri
         Some(Class::AfterForward(RecordKind::Frame)) => return frame(size),
         _ => {}
     }
-    match (size, top) {
-        (Place { bits: 1, words: 0, joints: 0 }, Newest { bit: Some(bit), .. }) => {
-            format!("bit {}", u8::from(*bit))
+    let own = match ((size.bits, size.words, size.joints), top) {
+        ((0, 0, 0), _) => None,
+        ((1, 0, 0), Newest { bit: Some(bit), .. }) => Some(format!("bit {}", u8::from(*bit))),
+        ((0, 1, 0), Newest { word: Some(word), .. }) => {
+            Some(instr.map_or_else(|| plain(*word), |instr| word_of(module, pc, instr, *word)))
         }
-        (Place { bits: 0, words: 1, joints: 0 }, Newest { word: Some(word), .. }) => {
-            instr.map_or_else(|| plain(*word), |instr| word_of(module, pc, instr, *word))
-        }
-        (Place { bits: 0, words: 0, joints: 1 }, Newest { joints: Some(joints), .. }) => {
+        ((0, 0, 1), Newest { joints: Some(joints), .. }) => {
             let shown: Vec<String> = joints.iter().map(|joint| format!("{joint:.4}")).collect();
-            format!("joints [{}] rad", shown.join(", "))
+            Some(format!("joints [{}] rad", shown.join(", ")))
         }
-        _ => frame(size),
+        _ => Some(frame(size)),
+    };
+    let turn = top.control.filter(|_| size.control > 0).map(|word| turn(size.control, word));
+    own.into_iter().chain(turn).collect::<Vec<_>>().join(", ")
+}
+
+/// Whose turn ended with the instruction.
+fn turn(words: u64, newest: u64) -> String {
+    let Switch { task, steps, leaves } = Switch::from_word(newest);
+    let ended = format!("end of a turn of branch {} after {}", task + 1, counted(steps, "step"));
+    if leaves {
+        format!("{ended}, the others held in {}", counted(words - 1, "word"))
+    } else {
+        ended
     }
 }
 

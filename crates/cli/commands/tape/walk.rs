@@ -161,5 +161,6 @@ fn less(a: Place, b: Place) -> Place {
         bits: a.bits.saturating_sub(b.bits),
         words: a.words.saturating_sub(b.words),
         joints: a.joints.saturating_sub(b.joints),
+        control: a.control.saturating_sub(b.control),
     }
 }

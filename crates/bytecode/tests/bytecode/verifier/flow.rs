@@ -113,7 +113,7 @@ fn rule_6_loops_nest() {
     );
     refuses(&reused, Rule::Loops, 7, "the counter is that of a loop around this one");
     // The end of a loop that is not the innermost one, without `for.next`.
-    let ends = "it does not end the innermost loop or block";
+    let ends = "it does not end the innermost loop, block or branch";
     refused_among(
         "push.int 1\n push.int 2\n for.enter 0, #5\n a: block.begin\n for.exit 0, #3\n \
          block.skip a",
@@ -126,13 +126,13 @@ fn rule_6_loops_nest() {
         "push.int 1\n push.int 2\n for.enter 0, #4",
         Rule::Loops,
         3,
-        "the loop or block has no end",
+        "the loop, block or fork has no end",
     );
 }
 
 #[test]
 fn rule_6_nothing_jumps_into_a_loop() {
-    let into = "it jumps into a loop or block from outside";
+    let into = "it jumps into a loop, block or branch from outside";
     let before = LOOP.replace("add.local.imm n, 1", "x: join");
     refuses(&format!("push.local b\n jump.if x\n{before}"), Rule::Loops, 2, into);
     refuses(&format!("{before}\n push.local b\n jump.if x"), Rule::Loops, 9, into);
@@ -147,8 +147,8 @@ fn rule_6_nothing_jumps_into_a_loop() {
 
 #[test]
 fn rule_8_blocks_nest() {
-    let ends = "it does not end the innermost loop or block";
-    let none = "the loop or block has no end";
+    let ends = "it does not end the innermost loop, block or branch";
+    let none = "the loop, block or fork has no end";
     refuses("block.skip #1", Rule::Blocks, 1, ends);
     refuses("block.begin\n block.skip #2", Rule::Blocks, 2, ends);
     refuses("block.begin\n block.replace plain, #0", Rule::Blocks, 2, ends);
@@ -169,7 +169,7 @@ fn rule_8_blocks_nest() {
 
 #[test]
 fn rule_8_nothing_jumps_into_or_out_of_a_block() {
-    let into = "it jumps into a loop or block from outside";
+    let into = "it jumps into a loop, block or branch from outside";
     refuses(
         "push.local b\n jump.if x\n a: block.begin\n x: join\n block.skip a",
         Rule::Blocks,
@@ -215,5 +215,53 @@ fn rule_8_nesting_is_bounded() {
         format!("{}{ends}", "block.begin\n".repeat(depth))
     };
     accepted(start(&nested(256)));
-    refused_among(&nested(257), Rule::Blocks, 258, "loops and blocks nest deeper than 256");
+    refused_among(&nested(257), Rule::Blocks, 258, "loops, blocks and forks nest deeper than 256");
+}
+
+/// A fork of two branches, with what stands in each.
+fn fork(first: &str, second: &str) -> String {
+    format!("f: fork j\n {first}\n fork.next\n {second}\n j: fork.join f")
+}
+
+#[test]
+fn rule_10_forks_nest() {
+    let ends = "it does not end the innermost loop, block or branch";
+    refuses("fork.next", Rule::Tasks, 1, ends);
+    refuses("f: fork j\n block.begin\n j: fork.join f", Rule::Tasks, 3, ends);
+    refuses("f: fork j\n a: block.begin\n fork.next\n j: fork.join f", Rule::Tasks, 3, ends);
+    let within = "a: block.begin\n f: fork j\n block.skip a\n j: fork.join f";
+    refused_among(within, Rule::Blocks, 3, ends);
+    let many = "fork.next\n ".repeat(16);
+    let branches = "a fork has more than 16 branches";
+    refuses(&format!("f: fork j\n {many}j: fork.join f"), Rule::Tasks, 17, branches);
+}
+
+#[test]
+fn rule_10_nothing_jumps_into_or_out_of_a_branch() {
+    let into = "it jumps into a loop, block or branch from outside";
+    let out = "it jumps out of a branch";
+    let jump = "push.local b\n jump.if x";
+    refuses(&format!("{jump}\n {}", fork("x: join", "")), Rule::Tasks, 2, into);
+    refuses(&format!("{}\n x: join", fork(jump, "")), Rule::Tasks, 3, out);
+    refuses(&fork(jump, "x: join"), Rule::Tasks, 3, out);
+}
+
+#[test]
+fn rule_10_who_leaves_names_the_join_of_the_innermost_fork() {
+    let wrong = "it does not name the join of the innermost fork around it";
+    let leave = |to: &str| format!("push.local b\n jump.if x\n fork.leave {to}\n x: land");
+    refuses(&format!("{}\n {}", fork("", ""), leave("j")), Rule::Tasks, 6, wrong);
+    let inner = format!("g: fork k\n {}\n k: fork.join g", leave("j"));
+    refuses(&fork(&inner, ""), Rule::Tasks, 5, wrong);
+    let block = format!("a: block.begin\n {}\n block.skip a", leave("j"));
+    refuses(&fork(&block, ""), Rule::Tasks, 5, wrong);
+}
+
+#[test]
+fn rule_10_loops_of_two_branches_have_counters_of_their_own() {
+    let same = "a loop of this branch has the counter of one of a branch before";
+    let again = LOOP_1.replace(" 1,", " 0,").replace("top 1", "top 0").replace("exit 1", "exit 0");
+    let branches = fork(LOOP, &again);
+    refuses(&branches, Rule::Tasks, 17, same);
+    accepted(start(&fork(LOOP, LOOP_1)));
 }
