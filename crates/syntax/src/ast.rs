@@ -55,7 +55,7 @@ pub struct SignalDeclaration<'s> {
 }
 
 /// Which way a line of the workcell goes.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum SignalKind {
     /// The program sets it.
     Output,

@@ -37,7 +37,17 @@ impl<'s, 'k> Lexer<'s, 'k> {
         let nesting = Nesting::default();
         let (before_previous, previous) = (Token::Semicolon, Token::Semicolon);
         let (previous_end, has_ended) = (start, false);
-        Self { source, start, tokens, sink, nesting, before_previous, previous, previous_end, has_ended }
+        Self {
+            source,
+            start,
+            tokens,
+            sink,
+            nesting,
+            before_previous,
+            previous,
+            previous_end,
+            has_ended,
+        }
     }
 
     /// The next token as the grammar knows it; none where what was read is left out.

@@ -171,7 +171,8 @@ mod tests {
 
     #[test]
     fn indentation_tells_the_bracket_that_is_not_closed() {
-        let unclosed = |source| Surroundings::new(source, 0).likely_unclosed().map(|span| span.start);
+        let unclosed =
+            |source| Surroundings::new(source, 0).likely_unclosed().map(|span| span.start);
         assert_eq!(unclosed("a {\n  b {\n    c\n  d {\n  }\n}\n"), Some(8));
         assert_eq!(unclosed("a {\n  b {\n  }\n"), Some(2));
         assert_eq!(unclosed("a { b }"), None);

@@ -66,7 +66,7 @@ fn at_most_three_things_are_expected_and_none_is_a_token_of_the_parser() {
         ("end", "expected a statement or `}`, found `end`"),
         ("a = 3 4", "expected a statement, `}` or an operator, found `4`"),
         ("a = = 3", "expected a value, found `=`"),
-        ("set true high", "expected a name or a whole number, found `true`"),
+        ("set \"x\" high", "expected a name or a whole number, found a text in quotes"),
         ("set x hihg", "expected `high` or `low`, found `hihg`"),
         ("set 0 3", "expected `high` or `low`, found `3`"),
         ("speed quick", "expected a speed, found `quick`"),

@@ -167,9 +167,9 @@ fn outputs_and_inputs_are_used_by_name_as_by_number() {
     let body = "set lamp high toggle lamp; wait until input ready low for up to 2 s";
     with_statements(body, |statements| {
         let names = statements.iter().map(|statement| match statement {
-            StatementKind::Primitive(Primitive::Set { bit, .. } | Primitive::Toggle { bit, .. }) => {
-                signal(bit.value)
-            }
+            StatementKind::Primitive(
+                Primitive::Set { bit, .. } | Primitive::Toggle { bit, .. },
+            ) => signal(bit.value),
             StatementKind::WaitUntil { input, .. } => signal(input.value),
             other => panic!("{other:?}"),
         });
