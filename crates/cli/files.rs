@@ -87,3 +87,49 @@ impl Loader for ProgramFolder {
         })
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A folder that is gone when the test is over.
+    struct Scratch(PathBuf);
+
+    impl Scratch {
+        fn new(name: &str) -> Self {
+            let folder =
+                std::env::temp_dir().join(format!("obverse_{name}_{}", std::process::id()));
+            fs::create_dir_all(&folder).expect("a folder");
+            Self(folder)
+        }
+    }
+
+    impl Drop for Scratch {
+        fn drop(&mut self) {
+            let _ = fs::remove_dir_all(&self.0);
+        }
+    }
+
+    #[test]
+    fn a_file_that_grows_or_shrinks_has_changed() {
+        let scratch = Scratch::new("grows");
+        let path = scratch.0.join("f");
+        fs::write(&path, "four").expect("a file");
+        let before = fs::metadata(&path).expect("metadata");
+        assert!(!has_changed(&before, &before, 4));
+        assert!(has_changed(&before, &before, 3), "less was read than there is");
+        fs::write(&path, "fours").expect("a file");
+        assert!(has_changed(&before, &fs::metadata(&path).expect("metadata"), 4));
+    }
+
+    #[test]
+    fn a_file_that_vanishes_is_an_error() {
+        let scratch = Scratch::new("vanishes");
+        fs::write(scratch.0.join("f.obv"), "").expect("a file");
+        let mut folder = ProgramFolder::of(&scratch.0.join("main.obv"));
+        assert_eq!(folder.name("f.obv"), Ok("f.obv".to_owned()));
+        fs::remove_file(scratch.0.join("f.obv")).expect("it was there");
+        assert!(folder.read("f.obv").is_err_and(|why| why.contains("no such file")));
+        assert!(folder.name("f.obv").is_err());
+    }
+}

@@ -137,7 +137,7 @@ impl Loading<'_> {
         }
         let refuse = |loading: &mut Self, why: &str| {
             let message = format!("`{}` cannot be imported: {why}", written.value);
-            loading.report(Code::CannotImport, at, message, why);
+            loading.report(Code::CannotImport, at, message, "imported here");
             None
         };
         let name = match self.loader.name(path) {
@@ -154,6 +154,7 @@ impl Loading<'_> {
             return None;
         }
         let text = match self.loader.read(&name) {
+            Ok(text) if text.contains('\0') => return refuse(self, "this is no text: a NUL byte"),
             Ok(text) => text,
             Err(why) => return refuse(self, &why),
         };

@@ -6,6 +6,7 @@ use arbitrary::{Result, Unstructured};
 use obverse_bytecode::{Module, verify};
 use obverse_compiler::{Compiled, Loader, compile, compile_files};
 use std::collections::BTreeMap;
+use std::path::Path;
 
 /// How deep files import one another at the most.
 const MAX_DEPTH: usize = 4;
@@ -26,11 +27,31 @@ impl Loader for Folder {
 }
 
 impl Folder {
-    /// The program whose first file is `main.obv`.
+    /// The sources that a folder and those in it have, by their paths from there.
     #[must_use]
-    pub fn compile(&mut self) -> Compiled {
-        let main = self.0.get("main.obv").cloned().unwrap_or_default();
-        compile_files("main.obv", &main, self)
+    pub fn read(path: &Path) -> Self {
+        let mut folder = Self::default();
+        folder.add(path, "");
+        folder
+    }
+
+    fn add(&mut self, path: &Path, prefix: &str) {
+        for entry in std::fs::read_dir(path).into_iter().flatten().flatten() {
+            let name = format!("{prefix}{}", entry.file_name().to_string_lossy());
+            if entry.path().is_dir() {
+                self.add(&entry.path(), &format!("{name}/"));
+            } else if name.ends_with(".obv") {
+                let text = std::fs::read(entry.path()).unwrap_or_default();
+                self.0.insert(name, String::from_utf8_lossy(&text).into_owned());
+            }
+        }
+    }
+
+    /// The program that begins in a file; an empty one if there is no such file.
+    #[must_use]
+    pub fn compile(&mut self, file: &str) -> Compiled {
+        let text = self.0.get(file).cloned().unwrap_or_default();
+        compile_files(file, &text, self)
     }
 }
 
@@ -49,7 +70,7 @@ pub fn files_are_one_program(u: &mut Unstructured<'_>) -> Result<bool> {
     let mut folder = cut.folder;
     let files = folder.0.len();
     let Some(one) = compile("main.obv", &declarations.concat()).module else { return Ok(false) };
-    let compiled = folder.compile();
+    let compiled = folder.compile("main.obv");
     let Some(several) = compiled.module else {
         panic!("it does not compile: {:#?}\n{folder:#?}", compiled.diagnostics)
     };
