@@ -167,9 +167,11 @@ fn a_row_of_imports_has_an_end() {
 fn the_workcell_is_told_from_the_program_in_both_places() {
     let bench = Bench::new("both");
     bench.write("io.obv", "output lamp = 2\noutput horn = 12\ninput door = 9\n");
-    let main = "cell \"pin_cell.toml\"\nimport \"io.obv\"\nitem pin_11 { keyframe k = [0, 0, 0] mm }\n\
+    let main = "cell \"pin_cell.toml\"\nimport \"io.obv\"\n\
+                item pin_11 { keyframe k = [0, 0, 0] mm }\n\
                 item widget { keyframe k = [0, 0, 0] mm }\n\
-                sequence main {\n  tool griper\n  set horn high\n  move to pin_11.k\n  set 9 low\n}\n";
+                sequence main {\n  tool griper\n  set horn high\n  move to pin_11.k\n\
+                set 9 low\n}\n";
     bench.write("main.obv", main);
     let cell = String::from_utf8(bench.read("pin_cell.toml")).expect("text");
     let place = |needle: &str, after: usize| {
@@ -183,7 +185,7 @@ fn the_workcell_is_told_from_the_program_in_both_places() {
         &format!("{}8: its items begin here: `pin_1`, `pin_2`", place("name = \"pin_1\"", 0)),
         "main.obv:6:8: the workcell has no tool `griper`",
         &format!("{}8: did you mean `gripper`", place("name = \"gripper\"", 0)),
-        "main.obv:9:3: there is no output 9: the workcell has 8",
+        "main.obv:9:1: there is no output 9: the workcell has 8",
         "io.obv:2:1: there is no output 12: the workcell has 8",
         "main.obv:7:3: it is needed here",
         &format!("{}9: it says here that it has 8 outputs", place("[outputs]", 1)),

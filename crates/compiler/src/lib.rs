@@ -1,9 +1,9 @@
 //! Source text to module: resolve, check units and types, lower to statements.
 //!
 //! [`compile`] is the way in, and [`compile_files`] for a program of several files, which `load`
-//! gathers and `merge` makes one tree of. Read `types` and `units`, then `check` (syntax tree to checked tree),
-//! `effects` (errors and barriers across calls), `lower` (checked tree to code). Knows nothing of
-//! machines and robots; the parser is `obverse-syntax`.
+//! gathers and `merge` makes one tree of. Read `types` and `units`, then `check` (syntax tree to
+//! checked tree), `effects` (errors and barriers across calls), `lower` (checked tree to code).
+//! Knows nothing of machines and robots; the parser is `obverse-syntax`.
 
 mod check;
 mod effects;

@@ -2,8 +2,8 @@
 //!
 //! A code is stable: a row may be reworded, but its code is never given another meaning nor used
 //! again. `E00xx` is text and grammar, `E01xx` names, `E02xx` types and units, `E03xx` statements,
-//! structure and errors, `E04xx` reversal, `E05xx` files, `W0xxx` warnings. It knows nothing of how a mistake is
-//! found or shown.
+//! structure and errors, `E04xx` reversal, `E05xx` files, `W0xxx` warnings. It knows
+//! nothing of how a mistake is found or shown.
 
 macro_rules! codes {
     ($($name:ident $code:literal $title:literal

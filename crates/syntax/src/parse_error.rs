@@ -14,7 +14,8 @@ use crate::tree;
 /// The words for a direction that could be taken for the name of a distance.
 const DIRECTIONS: [&str; 7] = ["forward", "backward", "backwards", "left", "right", "up", "down"];
 
-/// All diagnostics of the text that begins at an offset, by place: those that have been worded, and those of syntax errors.
+/// All diagnostics of the text that begins at an offset, by place: those that have
+/// been worded, and those of syntax errors.
 pub(crate) fn explain(
     source: &str,
     start: usize,

@@ -13,6 +13,7 @@ use obverse_syntax::span::{Span, Spanned};
 impl<'s> Checker<'s> {
     /// `output gripper = 0`, `input part_present = 3`
     pub(super) fn declare_signal(&mut self, entry: &SignalDeclaration<'s>) {
+        let is_line = u16::try_from(entry.number.value).is_ok();
         let bit = self.line(entry.number);
         let (meaning, word) = match entry.kind {
             SignalKind::Output => (Meaning::Output(bit), "output"),
@@ -25,7 +26,7 @@ impl<'s> Checker<'s> {
             SignalKind::Input => Mentioned::Input { name, bit: bit.0 },
         };
         self.mention(what, entry.span);
-        if let Some(first) = self.signals.insert((entry.kind, bit.0), entry.name) {
+        if is_line && let Some(first) = self.signals.insert((entry.kind, bit.0), entry.name) {
             let message = format!("{word} {} has two names", bit.0);
             let at = format!("the {word} of `{}`", first.value);
             self.reports.add(

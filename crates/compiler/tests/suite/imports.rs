@@ -148,7 +148,7 @@ fn an_import_in_a_block_is_a_mistake() {
 fn every_file_is_read_to_its_own_end() {
     let texts = [
         ("main.obv", "import \"a.obv\"\nimport \"b.obv\"\nsequence main { wait 1 s"),
-        ("a.obv", "joints = 3"),
+        ("a.obv", "joints home = 3"),
         ("b.obv", "// no end of line, and an open text \"\nvar b = \"x"),
     ];
     assert_eq!(findings(&texts), ["E0011 main.obv:3", "E0010 a.obv:1", "E0002 b.obv:2"]);
