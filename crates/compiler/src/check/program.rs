@@ -124,6 +124,7 @@ impl<'s> Checker<'s> {
         let item = obverse_bytecode::Item { name: name.value.to_owned(), keyframes: Vec::new() };
         self.module.items.push(item);
         self.mention(Mentioned::Item(id), name.span);
+        self.keyframes.declare(name.span);
         self.declare(name, Meaning::Item(ItemId(id)));
     }
 
