@@ -488,7 +488,8 @@ codes! {
     // W0xxx: warnings.
     Unused "W0001" "something that is never used"
         why "It may have been forgotten, or what should use it is misspelt. A variable that is \
-             only assigned is not used. A name that begins with `_` is never warned about."
+             only assigned is not used. A name that begins with `_` is never warned about, nor is \
+             what an imported file declares, since it may serve other programs as well."
         wrong "sequence main { var count = 0 count += 1 }"
         right "sequence main { var count = 0 count += 1 if count > 0 { wait 1 s } }"
     Unreachable "W0002" "statements that are never reached"

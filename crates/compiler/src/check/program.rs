@@ -262,20 +262,24 @@ impl<'s> Checker<'s> {
         {
             return Some(id);
         }
-        self.report_no_main();
+        self.report_no_main(program);
         None
     }
 
-    fn report_no_main(&mut self) {
+    fn report_no_main(&mut self, program: &Program<'s>) {
         let end = u32::try_from(self.sources.text(0).trim_end().len()).unwrap_or(u32::MAX);
         let message = "there is no sequence that the program could begin with".to_owned();
-        let diagnostic = Diagnostic::error(
+        let mut diagnostic = Diagnostic::error(
             Code::NoMain,
             Span::new(end, end),
             message,
             "the file ends without one",
         )
         .with_help("write `sequence main { .. }`");
+        if !program.items.is_empty() {
+            let why = "a file that others import is checked with the program that imports it";
+            diagnostic = diagnostic.with_note(why);
+        }
         self.reports.add(diagnostic);
     }
 
