@@ -373,8 +373,16 @@ impl Module {
     fn position(&self, file: u16, start: u32) -> Option<(&str, usize, usize)> {
         let file = self.sources.get(usize::from(file))?;
         let before = file.text.get(..start as usize)?;
-        let line = before.bytes().filter(|&byte| byte == b'\n').count() + 1;
-        let column = before.chars().rev().take_while(|&c| c != '\n').count() + 1;
+        // A line ends with LF, CR LF or CR, as in the sources that diagnostics are of.
+        let text = file.text.as_bytes();
+        let ends_line = |at: usize| match text[at] {
+            b'\n' => true,
+            b'\r' => text.get(at + 1) != Some(&b'\n'),
+            _ => false,
+        };
+        let line = (0..before.len()).filter(|&at| ends_line(at)).count() + 1;
+        let begin = (0..before.len()).rev().find(|&at| ends_line(at)).map_or(0, |at| at + 1);
+        let column = before[begin..].chars().count() + 1;
         Some((&file.name, line, column))
     }
 }

@@ -1,8 +1,8 @@
 //! Source text to syntax tree: lexer, grammar, tree, spans, diagnostics.
 //!
 //! [`parse`] is the way in, and [`parse_file`] for one file of several; GRAMMAR.md
-//! beside this crate has the grammar on a page. What a program means (names, types, units, reversal)
-//! is not known here.
+//! beside this crate has the grammar on a page. What a program means (names, types, units,
+//! reversal) is not known here.
 
 pub mod ast;
 pub mod codes;
