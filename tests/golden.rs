@@ -2,7 +2,8 @@
 //! switch, `UPDATE=1 cargo test --test golden`, that writes what is rendered now.
 //!
 //! ```text
-//! diag/NAME.obv      what `obverse check` says of a program that is wrong: NAME.txt. `//~ E0201`
+//! diag/NAME.obv      what `obverse check` says of a program that is wrong: NAME.txt; what it
+//!                    imports is in a folder. `//~ E0201`
 //!                    at the end of a line says which diagnostics begin there, `//~^ E0201` alone
 //!                    on a line those of the line above; asserted, never written
 //! compile/NAME.obv   its disassembly but for the source text: NAME.obvasm
@@ -15,9 +16,10 @@
 
 use libtest_mimic::{Arguments, Failed, Trial};
 use obverse_bytecode::{Module, assemble, disassemble, verify};
+use obverse_compiler::{Compiled, MAX_IMPORT_DEPTH, compile_files};
 use obverse_syntax::codes::Code;
 use obverse_syntax::diagnostic::Diagnostic;
-use obverse_syntax::source::LineIndex;
+use obverse_testkit::files::Folder;
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 use std::process::{Command, ExitCode};
@@ -80,8 +82,10 @@ fn names_in(folder: &str) -> BTreeSet<String> {
     let Ok(entries) = std::fs::read_dir(Path::new(FOLDER).join(folder)) else {
         return BTreeSet::new();
     };
+    // Folders hold what is imported.
     let name = |entry: std::io::Result<std::fs::DirEntry>| {
-        entry.ok().map(|entry| entry.file_name().to_string_lossy().into_owned())
+        let entry = entry.ok().filter(|entry| !entry.path().is_dir())?;
+        Some(entry.file_name().to_string_lossy().into_owned())
     };
     entries.filter_map(name).collect()
 }
@@ -160,7 +164,7 @@ fn compiled(file: &str) -> Result<String, Failed> {
     let source = text(file)?;
     let name = file.trim_start_matches("compile/");
     let compiled = obverse_compiler::compile(name, &source);
-    let found: Vec<_> = placed(&source, &compiled.diagnostics).into_iter().collect();
+    let found: Vec<_> = placed(&compiled).into_iter().collect();
     let (Some(module), []) = (compiled.module, &found[..]) else {
         return Err(format!("it does not compile without a word: {found:?}").into());
     };
@@ -186,56 +190,78 @@ fn refused(file: &str) -> Result<String, Failed> {
 
 /// What `obverse check` says, if the diagnostics are those that the source says that it has.
 fn diagnosed(file: &str) -> Result<String, Failed> {
-    let (bytes, said) = (bytes(file)?, said(file)?);
-    let found = match obverse_syntax::text_of(&bytes) {
-        Ok(source) => placed(source, &obverse_compiler::compile(file, source).diagnostics),
-        Err(diagnostic) => placed("", &[*diagnostic]),
+    let bytes = bytes(file)?;
+    let name = file.trim_start_matches("diag/");
+    let (found, said) = match obverse_syntax::text_of(&bytes) {
+        Ok(source) => {
+            let compiled = compile_files(name, source, &mut Folder::read(&path("diag")));
+            let sources = &compiled.sources;
+            let said = (0..sources.len())
+                .flat_map(|file| said(sources.name(file), sources.text(file)))
+                .collect();
+            (placed(&compiled), said)
+        }
+        Err(diagnostic) => {
+            let found = Placed::from([(name.to_owned(), 1, diagnostic.code.to_string())]);
+            (found, said(name, &text(file)?))
+        }
     };
     if found != said {
         return Err(format!("it says that it has {said:?}, and it has {found:?}").into());
     }
     let code = file.trim_start_matches("diag/").split(['.', '_']).next().unwrap_or_default();
-    if !said.iter().any(|(_, said)| said == code) {
+    if !said.iter().any(|(_, _, said)| said == code) {
         return Err(format!("its name says that it shows {code}, and it does not").into());
     }
     printed(&["check", file])
 }
 
-/// Lines and codes of diagnostics.
-type Placed = BTreeSet<(usize, String)>;
+/// Files, lines and codes of diagnostics.
+type Placed = BTreeSet<(String, usize, String)>;
 
-fn placed(source: &str, diagnostics: &[Diagnostic]) -> Placed {
-    let lines = LineIndex::new(source);
+fn placed(compiled: &Compiled) -> Placed {
     let place = |one: &Diagnostic| {
-        (lines.position(one.primary.span.start).line as usize, one.code.to_string())
+        let (name, position) = compiled.sources.position(one.primary.span);
+        (name.to_owned(), position.line as usize, one.code.to_string())
     };
-    diagnostics.iter().map(place).collect()
+    compiled.diagnostics.iter().map(place).collect()
 }
 
-/// What a source says of its own diagnostics.
-fn said(file: &str) -> Result<Placed, Failed> {
+/// What a file says of its own diagnostics.
+fn said(name: &str, text: &str) -> Placed {
     let mut said = Placed::new();
-    for (number, line) in (1..).zip(text(file)?.lines()) {
+    for (number, line) in (1..).zip(text.lines()) {
         let Some((_, codes)) = line.split_once("//~") else { continue };
         let (number, codes) = match codes.strip_prefix('^') {
             Some(codes) => (number - 1, codes),
             None => (number, codes),
         };
-        said.extend(codes.split_whitespace().map(|code| (number, code.to_owned())));
+        let one = |code: &str| (name.to_owned(), number, code.to_owned());
+        said.extend(codes.split_whitespace().map(one));
     }
-    if said.is_empty() { Err("no `//~ CODE` in it".into()) } else { Ok(said) }
+    said
 }
 
-/// A text of this length is not kept among the goldens.
-fn too_large() -> Placed {
+/// What takes too much room to be kept among the goldens: a text that is too large, and more files
+/// in a row than may import one another.
+fn too_large() -> Vec<Code> {
     let source = " ".repeat(obverse_syntax::MAX_SOURCE_BYTES + 1);
-    placed("", &obverse_syntax::parse(&source).diagnostics)
+    let mut row = Folder::default();
+    for index in 0..=MAX_IMPORT_DEPTH + 1 {
+        row.0.insert(format!("{index}.obv"), format!("import \"{}.obv\"", index + 1));
+    }
+    let found = [obverse_syntax::parse(&source).diagnostics, row.compile("0.obv").diagnostics];
+    found.iter().flatten().map(|one| one.code).collect()
 }
 
 fn every_diagnostic_is_shown() -> Result<(), Failed> {
-    let mut shown: BTreeSet<String> = too_large().into_iter().map(|(_, code)| code).collect();
+    let mut shown: BTreeSet<String> = too_large().iter().map(ToString::to_string).collect();
     for name in names_in("diag").iter().filter(|name| name.ends_with(".obv")) {
-        shown.extend(said(&format!("diag/{name}"))?.into_iter().map(|(_, code)| code));
+        let said = said(name, &text(&format!("diag/{name}"))?);
+        if said.is_empty() {
+            return Err(format!("no `//~ CODE` in {name}").into());
+        }
+        shown.extend(said.into_iter().map(|(_, _, code)| code));
     }
     let codes: BTreeSet<String> = Code::ALL.iter().map(ToString::to_string).collect();
     let missing: Vec<_> = codes.difference(&shown).collect();

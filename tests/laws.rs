@@ -4,7 +4,7 @@
 //! law sees; a failure prints the number of the program, and `LAW_SEED` runs that one alone.
 
 use arbitrary::{Result, Unstructured};
-use obverse_testkit::{laws, machine_laws};
+use obverse_testkit::{files, laws, machine_laws};
 use std::collections::BTreeSet;
 
 /// How many modules each law sees.
@@ -62,6 +62,7 @@ laws! {
         turns >= 12
         round_trips >= 100;
     laws: compiles >= 100 agrees_forward >= 95 agrees_backward >= 75;
+    files: files_are_one_program >= 60;
 }
 
 #[test]

@@ -7,6 +7,7 @@ use obverse_bytecode::verify;
 use obverse_geometry::Pose;
 use obverse_recovery::{Ending, drive};
 use obverse_sim::{Cell, Sim};
+use obverse_testkit::files::Folder;
 use obverse_vm::{Direction, Limits, Machine};
 use obverse_workcell::{ItemId, Items};
 use serde_json::Value;
@@ -43,6 +44,7 @@ const PROGRAMS: &[Expected] = &[
     identical("feeder.obv"),
     identical("find_edge.obv"),
     Expected { file: "glue.obv", ends_with_error: &[], back: Back::StopsAt(21) },
+    identical("handover.obv"),
     Expected { file: "marking.obv", ends_with_error: &[], back: Back::StopsAt(46) },
     identical("peg_in_hole.obv"),
     Expected { file: "reversal_policy.obv", ends_with_error: &[0], back: Back::Identical },
@@ -172,6 +174,9 @@ fn the_language_is_shown() {
         ("reversal_policy.obv", "recover by reversing"),
         ("reversal_policy.obv", "checkpoint"),
         ("tower.obv", "keyframe"),
+        ("handover.obv", "import \"handover/"),
+        ("handover.obv", "set lamp high"),
+        ("handover.obv", "until input button"),
         ("warm_up.obv", "reversible always"),
         ("warm_up.obv", "position centre"),
         ("warm_up.obv", "random("),
@@ -199,7 +204,7 @@ struct Trip {
 
 impl Trip {
     fn of(file: &str, seed: u64) -> Self {
-        let program = verify(compiled(file, &source(file))).expect("a program that verifies");
+        let program = verify(compiled(file)).expect("a program that verifies");
         let name = program.module().cell.as_ref().expect("a workcell");
         let text = fs::read_to_string(folder().join(name)).expect("a workcell file");
         let cell = Cell::parse(&text).expect("a workcell");
@@ -223,8 +228,8 @@ impl Trip {
     }
 }
 
-fn compiled(file: &str, text: &str) -> obverse_bytecode::Module {
-    let compiled = obverse_compiler::compile(file, text);
+fn compiled(file: &str) -> obverse_bytecode::Module {
+    let compiled = Folder::read(&folder()).compile(file);
     compiled.module.unwrap_or_else(|| panic!("{file}: {:?}", compiled.diagnostics))
 }
 
@@ -282,7 +287,8 @@ fn a_barrier_keeps_the_tape_of_a_production_loop_from_growing() {
     assert!(text.contains("rounds = 10"));
     let tape_bytes = |rounds: u32| {
         let text = text.replace("rounds = 10", &format!("rounds = {rounds}"));
-        let program = verify(compiled("marking.obv", &text)).expect("a program");
+        let program = obverse_compiler::compile("marking.obv", &text).module;
+        let program = verify(program.expect("a module")).expect("a program");
         let cell = fs::read_to_string(folder().join("bench_cell.toml")).expect("a workcell");
         let mut sim = Sim::new(&Cell::parse(&cell).expect("a workcell"), 1);
         let mut machine = Machine::new(&program, &sim).expect("a machine");
@@ -295,4 +301,26 @@ fn a_barrier_keeps_the_tape_of_a_production_loop_from_growing() {
     let (many_bytes, many_bits) = tape_bytes(200);
     assert!(many_bits > 50 * few_bits, "more is recorded");
     assert!(many_bytes <= few_bytes, "{few_bytes} bytes are held, and then {many_bytes}");
+}
+
+/// A pose is taught anew in the file of poses, and a lamp is wired elsewhere in the I/O map: the
+/// logic is not touched, and what it does follows.
+#[test]
+fn poses_and_the_io_map_are_edited_apart_from_the_logic() {
+    let mut files = Folder::read(&folder());
+    let before = files.compile("handover.obv").module.expect("a module");
+    let mut edit = |file: &str, from: &str, to: &str| {
+        let text = files.0.get_mut(file).expect("a file");
+        assert!(text.contains(from), "{file}");
+        *text = text.replace(from, to);
+    };
+    edit("handover/poses.obv", "waving  = [180,", "waving  = [170,");
+    edit("handover/io.obv", "lamp    = 2", "lamp    = 3");
+    let after = files.compile("handover.obv").module.expect("a module");
+    assert_eq!(before.code.len(), after.code.len());
+    assert_eq!(before.sources[0], after.sources[0]);
+    let changed = before.code.iter().zip(&after.code).filter(|(a, b)| a != b).count();
+    assert_eq!(changed, 2, "the lamp is set twice");
+    let angles = |module: &obverse_bytecode::Module| module.joints[1].1[0].to_degrees().round();
+    assert_eq!((angles(&before), angles(&after)), (180.0, 170.0));
 }

@@ -1,17 +1,15 @@
 //! Programs and workcells from files, whatever they contain.
 
-use crate::problem::{Diagnosed, Message, Problem, plain};
-use crate::show;
+use crate::files::{self, ProgramFolder};
+use crate::problem::{Diagnosed, Message, Problem};
+use crate::{lacking, show};
 use obverse_bytecode::codec::MODULE;
-use obverse_bytecode::{Module, Verified, assemble, decode, verify};
+use obverse_bytecode::{Mentioned, Module, Verified, assemble, decode, verify};
+use obverse_compiler::{Compiled, compile_files};
 use obverse_sim::{Cell, Sim};
-use obverse_vm::{LinkError, Machine};
-use std::fs;
-use std::io::Read;
+use obverse_syntax::sources::Sources;
+use obverse_vm::Machine;
 use std::path::{Path, PathBuf};
-
-/// The largest file that is read, in bytes.
-const MAX_FILE_BYTES: u64 = 256 << 20;
 
 /// A program that may be run, and where it came from.
 pub(crate) struct Program {
@@ -23,26 +21,35 @@ pub(crate) struct Program {
     pub(crate) source: Option<Diagnosed>,
 }
 
+impl Program {
+    /// A source file of the program as people find it.
+    pub(crate) fn path_of(&self, file: &str) -> PathBuf {
+        match &self.source {
+            Some(diagnosed) => diagnosed.folder.join(file),
+            None => PathBuf::from(file),
+        }
+    }
+
+    /// Every file that was read for the program.
+    pub(crate) fn files(&self) -> Vec<PathBuf> {
+        let sources = self.source.iter().flat_map(|diagnosed| {
+            (1..diagnosed.sources.len()).map(|file| PathBuf::from(diagnosed.name(file)))
+        });
+        std::iter::once(self.path.clone()).chain(sources).collect()
+    }
+}
+
+/// A workcell file as it was read, for messages.
+pub(crate) struct Workcell {
+    /// What to call it.
+    pub(crate) name: String,
+    /// Its text; none for a bare arm.
+    pub(crate) text: Option<String>,
+}
+
 /// Read a file, if it is one and not too large.
 pub(crate) fn bytes(path: &Path) -> Result<Vec<u8>, Problem> {
-    let cannot = |error: std::io::Error| {
-        Problem::of_file(path, format!("cannot be read: {}", plain(&error)))
-    };
-    if fs::metadata(path).map_err(cannot)?.is_dir() {
-        return Err(Problem::of_file(path, "this is a folder; name a file in it"));
-    }
-    let mut bytes = Vec::new();
-    let file = fs::File::open(path).map_err(cannot)?;
-    // What a device or a pipe will give cannot be asked beforehand.
-    file.take(MAX_FILE_BYTES + 1).read_to_end(&mut bytes).map_err(cannot)?;
-    if bytes.len() as u64 > MAX_FILE_BYTES {
-        let megabytes = MAX_FILE_BYTES >> 20;
-        return Err(Problem::of_file(
-            path,
-            format!("larger than {megabytes} MiB, the most allowed"),
-        ));
-    }
-    Ok(bytes)
+    files::read(path).map_err(|why| Problem::of_file(path, why))
 }
 
 /// The module of a file, not verified, with the source text and its warnings, if there is one. It
@@ -68,19 +75,20 @@ pub(crate) fn module(path: &Path) -> Result<(Module, Option<Diagnosed>), Problem
 }
 
 fn compiled(path: &Path, raw: &[u8]) -> Result<(Module, Diagnosed), Problem> {
-    let name = path.display().to_string();
+    // The module carries the file's name alone: the same source gives the same bytes anywhere.
+    let name = path.file_name().unwrap_or(path.as_os_str()).to_string_lossy().into_owned();
+    let folder = path.with_file_name("");
     let text = match obverse_syntax::text_of(raw) {
         Ok(text) => text,
         Err(diagnostic) => {
-            let (text, diagnostics) = (String::new(), vec![*diagnostic]);
-            return Err(Problem::in_source(Diagnosed { name, text, diagnostics }));
+            let (sources, diagnostics) = (Sources::one(&name, ""), vec![*diagnostic]);
+            return Err(Problem::in_source(Diagnosed { folder, sources, diagnostics }));
         }
     };
-    // The module carries the file's name alone: the same source gives the same bytes anywhere.
-    let short = path.file_name().map_or_else(|| name.clone(), |n| n.to_string_lossy().into_owned());
-    let compiled = obverse_compiler::compile(&short, text);
-    let diagnosed = Diagnosed { name, text: text.to_owned(), diagnostics: compiled.diagnostics };
-    match compiled.module {
+    let compiled = compile_files(&name, text, &mut ProgramFolder::of(path));
+    let Compiled { module, diagnostics, sources } = compiled;
+    let diagnosed = Diagnosed { folder, sources, diagnostics };
+    match module {
         Some(module) => Ok((module, diagnosed)),
         None => Err(Problem::in_source(diagnosed)),
     }
@@ -126,22 +134,19 @@ pub(crate) fn workcell_path(program: &Program, named: Option<&Path>) -> Option<P
     named.map(Path::to_owned).or_else(beside)
 }
 
-/// The workcell that a program runs in, and what to call it; a bare arm where none is named.
+/// The workcell that a program runs in, and its file; a bare arm where none is named.
 pub(crate) fn workcell(
     program: &Program,
     named: Option<&Path>,
     seed: u64,
-) -> Result<(Sim, String), Problem> {
+) -> Result<(Sim, Workcell), Problem> {
     let Some(path) = workcell_path(program, named) else {
-        return Ok((Sim::new(&Cell::bare(), seed), "a bare arm".to_owned()));
+        let bare = Workcell { name: "a bare arm".to_owned(), text: None };
+        return Ok((Sim::new(&Cell::bare(), seed), bare));
     };
-    let raw = bytes(&path).map_err(|mut problem| {
-        if named.is_none() {
-            let file = program.path.display();
-            let hint = format!("; {file} names it as its workcell, `--cell FILE` names another");
-            problem.messages.iter_mut().for_each(|message| message.text.push_str(&hint));
-        }
-        problem
+    let raw = bytes(&path).map_err(|problem| match named {
+        Some(_) => problem,
+        None => named_by(program, problem),
     })?;
     let text = String::from_utf8(raw)
         .map_err(|error| Problem::of_file(&path, format!("not text: {error}")))?;
@@ -149,25 +154,33 @@ pub(crate) fn workcell(
         let place = (error.line, error.column);
         Problem::several(vec![Message::of_file(&path, error.message).at(Some(place))])
     })?;
-    Ok((Sim::new(&cell, seed), path.display().to_string()))
+    let file = Workcell { name: path.display().to_string(), text: Some(text) };
+    Ok((Sim::new(&cell, seed), file))
+}
+
+/// What is wrong with a workcell file, and where the program names it.
+fn named_by(program: &Program, mut problem: Problem) -> Problem {
+    let module = program.verified.module();
+    let mention = module.mentions.iter().find(|mention| mention.what == Mentioned::Cell);
+    let place = mention.and_then(|mention| module.place_of_mention(mention));
+    let text = "it is named as the workcell here; `--cell FILE` names another";
+    let here = match place {
+        Some((file, line, column)) => {
+            Message::of_file(&program.path_of(file), text).at(Some((line, column)))
+        }
+        None => Message::of_file(&program.path, text),
+    };
+    problem.messages =
+        problem.messages.into_iter().map(|one| one.with(Some(here.clone()))).collect();
+    problem
 }
 
 /// A machine at the start of a program, in its workcell.
 pub(crate) fn machine<'p>(
     program: &'p Program,
     cell: &Sim,
-    cell_name: &str,
+    workcell: &Workcell,
 ) -> Result<Machine<'p>, Problem> {
-    Machine::new(&program.verified, cell).map_err(|errors| {
-        let module = program.verified.module();
-        let message = |error: &LinkError| {
-            let place = match error {
-                LinkError::Output { pc, .. } | LinkError::Input { pc, .. } => module.place_of(*pc),
-                LinkError::Item(_) | LinkError::Tool(_) => None,
-            };
-            Message::of_file(&program.path, format!("{error} (workcell: {cell_name})"))
-                .at(place.map(|(_, line, column)| (line, column)))
-        };
-        Problem::several(errors.iter().map(message).collect())
-    })
+    Machine::new(&program.verified, cell)
+        .map_err(|errors| Problem::several(lacking::messages(program, workcell, &errors)))
 }

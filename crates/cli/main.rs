@@ -5,6 +5,8 @@
 //! [`problem`].
 
 mod commands;
+mod files;
+mod lacking;
 mod load;
 mod problem;
 mod report;

@@ -3,7 +3,8 @@
 //! Data alone; how it is shown is in `show`.
 
 use obverse_syntax::diagnostic::Diagnostic;
-use std::path::Path;
+use obverse_syntax::sources::Sources;
+use std::path::{Path, PathBuf};
 
 /// Why a command was not carried out.
 #[derive(Debug)]
@@ -23,15 +24,17 @@ pub(crate) struct Message {
     pub(crate) place: Option<(usize, usize)>,
     /// What is wrong there.
     pub(crate) text: String,
+    /// Further places that belong to it.
+    pub(crate) also: Vec<Message>,
 }
 
-/// A source text and what is wrong with it.
+/// The files of a program and what is wrong with them.
 #[derive(Clone, Debug)]
 pub(crate) struct Diagnosed {
-    /// The file.
-    pub(crate) name: String,
-    /// Its text.
-    pub(crate) text: String,
+    /// The folder that they are in, as the command line names it.
+    pub(crate) folder: PathBuf,
+    /// The files as they were read; the first is the one that the command line names.
+    pub(crate) sources: Sources,
     /// Errors and warnings, by place.
     pub(crate) diagnostics: Vec<Diagnostic>,
 }
@@ -39,7 +42,7 @@ pub(crate) struct Diagnosed {
 impl Problem {
     /// Something wrong with the command line.
     pub(crate) fn new(text: impl Into<String>) -> Self {
-        Self::several(vec![Message { file: None, place: None, text: text.into() }])
+        Self::several(vec![Message::new(text)])
     }
 
     /// Something wrong with a file.
@@ -52,21 +55,39 @@ impl Problem {
         Self { messages, source: None }
     }
 
-    /// What is wrong with a source text.
+    /// What is wrong with a program's files.
     pub(crate) fn in_source(diagnosed: Diagnosed) -> Self {
         Self { messages: Vec::new(), source: Some(diagnosed) }
     }
 }
 
+impl Diagnosed {
+    /// A file as people find it.
+    pub(crate) fn name(&self, file: usize) -> String {
+        self.folder.join(self.sources.name(file)).display().to_string()
+    }
+}
+
 impl Message {
+    /// A sentence about no file.
+    pub(crate) fn new(text: impl Into<String>) -> Self {
+        Self { file: None, place: None, text: text.into(), also: Vec::new() }
+    }
+
     /// A sentence about a file.
     pub(crate) fn of_file(path: &Path, text: impl ToString) -> Self {
-        Self { file: Some(path.display().to_string()), place: None, text: text.to_string() }
+        Self { file: Some(path.display().to_string()), ..Self::new(text.to_string()) }
     }
 
     /// The same at a line and column, if they are known.
     pub(crate) fn at(self, place: Option<(usize, usize)>) -> Self {
         Self { place, ..self }
+    }
+
+    /// The same with a further place, if there is one.
+    pub(crate) fn with(mut self, also: Option<Self>) -> Self {
+        self.also.extend(also);
+        self
     }
 }
 
@@ -79,7 +100,8 @@ impl std::fmt::Display for Message {
             }
             write!(f, " ")?;
         }
-        f.write_str(&self.text)
+        f.write_str(&self.text)?;
+        self.also.iter().try_for_each(|also| write!(f, "\n  {also}"))
     }
 }
 

@@ -102,11 +102,11 @@ pub(crate) fn place(module: &Module, pc: Option<u32>) -> Value {
     object
 }
 
-/// The source lines of instructions. Each is looked for once, however often it is asked for.
+/// Where instructions were written. Each is looked for once, however often it is asked for.
 pub(crate) struct Lines<'m> {
     module: &'m Module,
     /// By the first instruction of what was written there.
-    found: BTreeMap<u32, Option<usize>>,
+    found: BTreeMap<u32, Option<(&'m str, usize)>>,
 }
 
 impl<'m> Lines<'m> {
@@ -114,11 +114,30 @@ impl<'m> Lines<'m> {
         Self { module, found: BTreeMap::new() }
     }
 
-    /// The line of an instruction, from 1, if it is known.
-    pub(crate) fn of(&mut self, pc: u32) -> Option<usize> {
+    /// The file and the line, from 1, of an instruction, if they are known.
+    pub(crate) fn of(&mut self, pc: u32) -> Option<(&'m str, usize)> {
         let first = self.module.source_at(pc)?.first;
-        let look = || self.module.place_of(pc).map(|(_, line, _)| line);
+        let look = || self.module.place_of(pc).map(|(file, line, _)| (file, line));
         *self.found.entry(first).or_insert_with(look)
+    }
+
+    /// The line of an instruction for people, with its file where there are several; empty if it is
+    /// not known.
+    pub(crate) fn shown(&mut self, pc: u32) -> String {
+        let is_one = self.module.sources.len() <= 1;
+        self.of(pc).map_or_else(String::new, |(file, line)| match is_one {
+            true => line.to_string(),
+            false => format!("{file}:{line}"),
+        })
+    }
+
+    /// How wide a column of them is, at the most of what is reasonable.
+    pub(crate) fn width(&self) -> usize {
+        let names = self.module.sources.iter().map(|source| source.name.chars().count());
+        match names.len() {
+            0 | 1 => 5,
+            _ => (names.max().unwrap_or(0) + 5).min(40),
+        }
     }
 }
 

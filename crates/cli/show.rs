@@ -2,12 +2,14 @@
 
 use crate::problem::{Diagnosed, Message, Problem};
 use crate::write::printable;
-use ariadne::{CharSet, Color, Config, IndexType, Label, Report, ReportKind, Source};
+use ariadne::{CharSet, Color, Config, IndexType, Label, Report, ReportKind};
 use obverse_syntax::codes::Code;
 use obverse_syntax::diagnostic::{self, Diagnostic, Severity};
 use obverse_syntax::source::LineIndex;
+use obverse_syntax::sources::{Place, Sources};
 use obverse_syntax::span::Span;
 use serde_json::{Value, json};
+use std::borrow::Cow;
 use std::io::{IsTerminal, Write};
 
 /// Lines longer than these, in bytes, are not drawn.
@@ -23,23 +25,68 @@ pub(crate) fn problem(problem: &Problem) {
     to_stderr(printable(&messages.concat()).as_bytes());
 }
 
-/// Show the diagnostics of a source text, and how many there are.
+/// Show the diagnostics of a program, and how many there are.
 pub(crate) fn diagnostics(diagnosed: &Diagnosed) {
+    let total = counted(&diagnosed.diagnostics);
+    if total.is_empty() {
+        return;
+    }
     let mut shown = Vec::new();
     let is_terminal = std::io::stderr().is_terminal();
-    let text = printable(&diagnosed.text);
-    let lines = LineIndex::new(&text);
+    let texts = texts(diagnosed);
+    let files = Files::of(diagnosed, &texts);
+    let mut cache = ariadne::sources(
+        texts.iter().map(|(name, text)| (name.clone(), text.clone().into_owned())),
+    );
     for diagnostic in &diagnosed.diagnostics {
-        match is_drawn(&lines, diagnostic) {
-            true => draw(&diagnosed.name, &text, diagnostic, is_terminal, &mut shown),
-            false => write_out(&diagnosed.name, &lines, diagnostic, &mut shown),
+        match files.is_drawn(diagnostic) {
+            true => draw(&files, &mut cache, diagnostic, is_terminal, &mut shown),
+            false => write_out(&files, diagnostic, &mut shown),
         }
     }
-    let total = counted(&diagnosed.diagnostics);
-    if !total.is_empty() {
-        shown.extend_from_slice(format!("{}: {total}\n", diagnosed.name).as_bytes());
-    }
+    shown.extend_from_slice(format!("{}: {total}\n", diagnosed.name(0)).as_bytes());
     to_stderr(&shown);
+}
+
+/// The files of a program by the name that people know, printable.
+fn texts(diagnosed: &Diagnosed) -> Vec<(String, Cow<'_, str>)> {
+    let sources = &diagnosed.sources;
+    let file = |file| (diagnosed.name(file), printable(sources.text(file)));
+    (0..sources.len()).map(file).collect()
+}
+
+/// Where things are in the files of a program.
+struct Files<'d> {
+    sources: &'d Sources,
+    /// By file, its name and its lines.
+    files: Vec<(&'d str, LineIndex<'d>)>,
+}
+
+impl<'d> Files<'d> {
+    fn of(diagnosed: &'d Diagnosed, texts: &'d [(String, Cow<'d, str>)]) -> Self {
+        let file = |(name, text): &'d (String, Cow<'d, str>)| (name.as_str(), LineIndex::new(text));
+        Self { sources: &diagnosed.sources, files: texts.iter().map(file).collect() }
+    }
+
+    /// The name of the file that a span is in, its lines, and where in it.
+    fn at(&self, span: Span) -> (&str, &LineIndex<'d>, Span) {
+        let Place { file, span } = self.sources.locate(span);
+        let (name, lines) = &self.files[file];
+        (name, lines, span)
+    }
+
+    /// Whether a diagnostic can be drawn into its source: there is one, with lines that fit a
+    /// screen.
+    fn is_drawn(&self, diagnostic: &Diagnostic) -> bool {
+        let is_short = |label: &diagnostic::Label| {
+            let (_, lines, span) = self.at(label.span);
+            let (start, end) = (lines.position(span.start), lines.position(span.end));
+            let length = |line| lines.line_text(line).len();
+            length(start.line) <= DRAWN_MAX && length(end.line) <= DRAWN_MAX
+        };
+        let mut labels = std::iter::once(&diagnostic.primary).chain(&diagnostic.labels);
+        diagnostic.code != Code::NotText && labels.all(is_short)
+    }
 }
 
 /// How many diagnostics there are of a severity.
@@ -64,33 +111,29 @@ fn to_stderr(bytes: &[u8]) {
     let _ = std::io::stderr().lock().write_all(bytes);
 }
 
-/// Whether a diagnostic can be drawn into its source: there is one, with lines that fit a screen.
-fn is_drawn(lines: &LineIndex<'_>, diagnostic: &Diagnostic) -> bool {
-    let is_short = |label: &diagnostic::Label| {
-        let (start, end) = (lines.position(label.span.start), lines.position(label.span.end));
-        let length = |line| lines.line_text(line).len();
-        length(start.line) <= DRAWN_MAX && length(end.line) <= DRAWN_MAX
-    };
-    let mut labels = std::iter::once(&diagnostic.primary).chain(&diagnostic.labels);
-    diagnostic.code != Code::NotText && labels.all(is_short)
-}
-
 /// A diagnostic without the source: message, places, notes and help, a line each.
-fn write_out(name: &str, lines: &LineIndex<'_>, diagnostic: &Diagnostic, shown: &mut Vec<u8>) {
+fn write_out(files: &Files<'_>, diagnostic: &Diagnostic, shown: &mut Vec<u8>) {
     let kind = match diagnostic.severity {
         Severity::Error => "Error",
         Severity::Warning => "Warning",
     };
     let mut told = format!("[{}] {kind}: {}\n", diagnostic.code, diagnostic.message);
     for label in std::iter::once(&diagnostic.primary).chain(&diagnostic.labels) {
-        told += &format!("   {name}:{}: {}\n", lines.position(label.span.start), label.text);
+        let (name, lines, span) = files.at(label.span);
+        told += &format!("   {name}:{}: {}\n", lines.position(span.start), label.text);
     }
     diagnostic.notes.iter().for_each(|note| told += &format!("   Note: {note}\n"));
     diagnostic.help.iter().for_each(|help| told += &format!("   Help: {help}\n"));
     shown.extend_from_slice(told.as_bytes());
 }
 
-fn draw(name: &str, text: &str, diagnostic: &Diagnostic, color: bool, shown: &mut Vec<u8>) {
+fn draw(
+    files: &Files<'_>,
+    cache: &mut impl ariadne::Cache<String>,
+    diagnostic: &Diagnostic,
+    color: bool,
+    shown: &mut Vec<u8>,
+) {
     let (kind, main_color) = match diagnostic.severity {
         Severity::Error => (ReportKind::Error, Color::Red),
         Severity::Warning => (ReportKind::Warning, Color::Yellow),
@@ -100,7 +143,10 @@ fn draw(name: &str, text: &str, diagnostic: &Diagnostic, color: bool, shown: &mu
         .with_char_set(CharSet::Unicode)
         .with_index_type(IndexType::Byte)
         .with_compact(false);
-    let at = |span: Span| (name, span.start as usize..span.end as usize);
+    let at = |span: Span| {
+        let (name, _, span) = files.at(span);
+        (name.to_owned(), span.start as usize..span.end as usize)
+    };
     let mut report = Report::build(kind, at(diagnostic.primary.span))
         .with_config(config)
         .with_code(diagnostic.code.as_str())
@@ -123,15 +169,20 @@ fn draw(name: &str, text: &str, diagnostic: &Diagnostic, color: bool, shown: &mu
         report = report.with_help(help);
     }
     // Writing to memory does not fail.
-    let _ = report.finish().write((name, Source::from(text)), &mut *shown);
+    let _ = report.finish().write(cache, &mut *shown);
 }
 
 /// The diagnostics of a source text for machines, one object each.
 pub(crate) fn diagnostics_json(diagnosed: &Diagnosed) -> Vec<Value> {
-    let lines = LineIndex::new(&diagnosed.text);
+    let sources = &diagnosed.sources;
+    let lines: Vec<LineIndex<'_>> =
+        (0..sources.len()).map(|file| LineIndex::new(sources.text(file))).collect();
     let label = |span: Span, text: &str| {
+        let Place { file, span } = sources.locate(span);
+        let lines = &lines[file];
         let (start, end) = (lines.position(span.start), lines.position(span.end));
         json!({
+            "file": diagnosed.name(file),
             "line": start.line,
             "column": start.column,
             "end_line": end.line,
@@ -143,7 +194,6 @@ pub(crate) fn diagnostics_json(diagnosed: &Diagnosed) -> Vec<Value> {
         let primary = &diagnostic.primary;
         let mut object = label(primary.span, &primary.text);
         object["type"] = json!("diagnostic");
-        object["file"] = json!(diagnosed.name);
         object["code"] = json!(diagnostic.code.as_str());
         object["severity"] = json!(match diagnostic.severity {
             Severity::Error => "error",
@@ -161,6 +211,11 @@ pub(crate) fn diagnostics_json(diagnosed: &Diagnosed) -> Vec<Value> {
 
 /// A message that is no diagnostic of a source text, for machines: without a code.
 fn message_json(message: &Message) -> Value {
+    let label = |also: &Message| {
+        let (line, column) = also.place.unzip();
+        json!({ "file": also.file, "line": line, "column": column, "text": also.text })
+    };
+    let labels: Vec<Value> = message.also.iter().map(label).collect();
     json!({
         "type": "diagnostic",
         "file": message.file,
@@ -169,7 +224,7 @@ fn message_json(message: &Message) -> Value {
         "code": null,
         "severity": "error",
         "message": message.text,
-        "labels": [],
+        "labels": labels,
         "notes": [],
         "help": null,
     })

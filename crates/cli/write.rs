@@ -9,7 +9,7 @@ use std::path::{Path, PathBuf};
 /// Check that a file can become what a command is about to make, before anything is done: its
 /// folder is there, it is a regular file or none, and it is none of the files that the command
 /// reads.
-pub(crate) fn check(path: &Path, what: &str, inputs: &[&Path]) -> Result<(), Problem> {
+pub(crate) fn check(path: &Path, what: &str, inputs: &[PathBuf]) -> Result<(), Problem> {
     let cannot = |why: String| Err(Problem::of_file(path, why));
     if path.file_name().is_none() || path.is_dir() {
         return cannot(format!("this is a folder; name a file for the {what}"));

@@ -25,11 +25,7 @@ impl Bench {
         let _ = fs::remove_dir_all(&folder);
         fs::create_dir_all(&folder).expect("a folder");
         let programs = Path::new(env!("CARGO_MANIFEST_DIR")).join("programs");
-        for entry in fs::read_dir(programs).expect("the programs") {
-            let path = entry.expect("an entry").path();
-            let name = path.file_name().expect("a name");
-            fs::copy(&path, folder.join(name)).expect("a copy");
-        }
+        copy(&programs, &folder);
         Self { folder }
     }
 
@@ -38,7 +34,9 @@ impl Bench {
     }
 
     pub(crate) fn write(&self, file: &str, content: impl AsRef<[u8]>) {
-        fs::write(self.path(file), content).expect("a file");
+        let path = self.path(file);
+        fs::create_dir_all(path.parent().expect("a folder")).expect("a folder");
+        fs::write(path, content).expect("a file");
     }
 
     pub(crate) fn read(&self, file: &str) -> Vec<u8> {
@@ -96,6 +94,20 @@ impl Bench {
         let summary = ran.summary();
         assert_eq!(summary["outcome"], "refused", "{arguments:?}");
         summary["messages"].as_array().expect("messages").clone()
+    }
+}
+
+/// Copy a folder and all that is in it.
+fn copy(from: &Path, to: &Path) {
+    for entry in fs::read_dir(from).expect("a folder") {
+        let path = entry.expect("an entry").path();
+        let to = to.join(path.file_name().expect("a name"));
+        if path.is_dir() {
+            fs::create_dir_all(&to).expect("a folder");
+            copy(&path, &to);
+        } else {
+            fs::copy(&path, to).expect("a copy");
+        }
     }
 }
 

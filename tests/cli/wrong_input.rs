@@ -125,7 +125,10 @@ fn workcells_that_lack_something_are_told_what() {
     bench.refuses(&["run", "io.obv", "--cell", "pin_cell.toml"], &words);
     bench.refuses(&["run", "io.obv"], &["a bare arm"]);
     bench.write("lost.obv", "cell \"lost.toml\"\nsequence main { wait 1 s }\n");
-    bench.refuses(&["run", "lost.obv"], &["lost.toml", "lost.obv names it", "--cell"]);
+    bench.refuses(
+        &["run", "lost.obv"],
+        &["lost.toml: cannot be read", "lost.obv:1:6: it is named", "--cell"],
+    );
 }
 
 #[test]

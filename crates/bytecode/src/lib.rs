@@ -15,8 +15,8 @@ pub use builder::{CodeBuilder, Mark};
 pub use codec::{DecodeError, DecodeErrorKind, decode, encode, fingerprint};
 pub use module::{
     ActionKind, Constant, Continuation, Depth, ErrorDeclaration, Extent, Function, FunctionKind,
-    Item, Keyframe, Module, Otherwise, Recovery, Respond, Reversal, Severity, SourceEntry,
-    SourceFile, Variable,
+    Item, Keyframe, Mention, Mentioned, Module, Otherwise, Recovery, Respond, Reversal, Severity,
+    SourceEntry, SourceFile, Variable,
 };
 pub use text::{AsmError, assemble, disassemble};
 pub use verify::{Verified, VerifyError, verify};

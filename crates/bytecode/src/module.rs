@@ -38,6 +38,8 @@ pub struct Module {
     pub code: Vec<Instr>,
     /// From instructions to the source, by ascending first instruction.
     pub source_map: Vec<SourceEntry>,
+    /// Where the program speaks of what its workcell must have.
+    pub mentions: Vec<Mention>,
 }
 
 /// A source file.
@@ -169,6 +171,44 @@ pub struct SourceEntry {
     pub end: u32,
     /// What begins here, if it is an action of the robot that a story tells and a recovery counts.
     pub action: Option<ActionKind>,
+}
+
+/// A place where the program speaks of something that its workcell must have.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Mention {
+    /// Of what.
+    pub what: Mentioned,
+    /// In which source file.
+    pub file: u16,
+    /// The first byte in it.
+    pub start: u32,
+    /// One past the last byte.
+    pub end: u32,
+}
+
+/// What a program speaks of that its workcell must have.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub enum Mentioned {
+    /// The workcell file.
+    Cell,
+    /// An item of the module's table.
+    Item(u16),
+    /// A tool of the module's table.
+    Tool(u16),
+    /// A digital output.
+    Output {
+        /// What the program calls it.
+        name: String,
+        /// Its number in the workcell.
+        bit: u16,
+    },
+    /// A digital input.
+    Input {
+        /// What the program calls it.
+        name: String,
+        /// Its number in the workcell.
+        bit: u16,
+    },
 }
 
 /// The kinds of action, in the words of a story.
@@ -321,10 +361,28 @@ impl Module {
     #[must_use]
     pub fn place_of(&self, pc: u32) -> Option<(&str, usize, usize)> {
         let entry = self.source_at(pc)?;
-        let file = self.sources.get(usize::from(entry.file))?;
-        let before = file.text.get(..entry.start as usize)?;
-        let line = before.bytes().filter(|&byte| byte == b'\n').count() + 1;
-        let column = before.chars().rev().take_while(|&c| c != '\n').count() + 1;
+        self.position(entry.file, entry.start)
+    }
+
+    /// The line and column, from 1, of where the program speaks of something, with the file's name.
+    #[must_use]
+    pub fn place_of_mention(&self, mention: &Mention) -> Option<(&str, usize, usize)> {
+        self.position(mention.file, mention.start)
+    }
+
+    fn position(&self, file: u16, start: u32) -> Option<(&str, usize, usize)> {
+        let file = self.sources.get(usize::from(file))?;
+        let before = file.text.get(..start as usize)?;
+        // A line ends with LF, CR LF or CR, as in the sources that diagnostics are of.
+        let text = file.text.as_bytes();
+        let ends_line = |at: usize| match text[at] {
+            b'\n' => true,
+            b'\r' => text.get(at + 1) != Some(&b'\n'),
+            _ => false,
+        };
+        let line = (0..before.len()).filter(|&at| ends_line(at)).count() + 1;
+        let begin = (0..before.len()).rev().find(|&at| ends_line(at)).map_or(0, |at| at + 1);
+        let column = before[begin..].chars().count() + 1;
         Some((&file.name, line, column))
     }
 }

@@ -14,10 +14,10 @@ pub(crate) type Arguments = run::Arguments;
 
 pub(crate) fn run(arguments: &Arguments) -> Result {
     let program = load::program(&arguments.file)?;
-    let (mut cell, cell_name) = run::workcell(arguments, &program)?;
-    let mut machine = load::machine(&program, &cell, &cell_name)?;
+    let (mut cell, file) = run::workcell(arguments, &program)?;
+    let mut machine = load::machine(&program, &cell, &file)?;
     let module = program.verified.module();
-    run::head(arguments, &cell_name);
+    run::head(arguments, &file.name);
     let start = machine.digest(&cell);
     let there = run::go(arguments, &mut machine, Direction::Forward, &mut cell);
     let (there_s, forward_instructions) = (cell.now_s(), machine.executed());

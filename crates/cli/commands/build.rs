@@ -21,7 +21,7 @@ pub(crate) struct Arguments {
 pub(crate) fn run(arguments: &Arguments) -> Result {
     let program = load::program(&arguments.file)?;
     let output = arguments.output.clone().unwrap_or_else(|| arguments.file.with_extension("obc"));
-    write::check(&output, "module", &[&arguments.file])?;
+    write::check(&output, "module", &program.files())?;
     let bytes = obverse_bytecode::encode(program.verified.module())
         .map_err(|error| Problem::of_file(&arguments.file, error))?;
     write::file(&output, &bytes)?;

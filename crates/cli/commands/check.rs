@@ -40,9 +40,9 @@ pub(crate) fn run(arguments: &Arguments) -> Result {
 
 /// Whether the program can run in its workcell; what that is called.
 fn in_its_cell(arguments: &Arguments, program: &Program) -> std::result::Result<String, Problem> {
-    let (cell, name) = load::workcell(program, arguments.cell.as_deref(), 0)?;
-    load::machine(program, &cell, &name)?;
-    Ok(name)
+    let (cell, file) = load::workcell(program, arguments.cell.as_deref(), 0)?;
+    load::machine(program, &cell, &file)?;
+    Ok(file.name)
 }
 
 fn warnings_of(program: &Program) -> &[Diagnostic] {

@@ -45,7 +45,8 @@ fn as_json(module: &Module) {
             "operands": operands,
             "class": info.class.name(),
             "function": function.map(|function| &function.name),
-            "line": lines.of(pc),
+            "file": lines.of(pc).map(|(file, _)| file),
+            "line": lines.of(pc).map(|(_, line)| line),
         });
         write::line(&object.to_string());
     }

@@ -1,7 +1,7 @@
 //! `obverse run`: run a program on the simulated workcell and tell what happens.
 
 use super::Result;
-use crate::load::{self, Program};
+use crate::load::{self, Program, Workcell};
 use crate::problem::Problem;
 use crate::report::{self, Report};
 use crate::story::Story;
@@ -12,7 +12,7 @@ use obverse_tape::TapeFile;
 use obverse_vm::{Direction, Limits, Machine};
 use obverse_workcell::Clock;
 use serde_json::{Map, json};
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 #[derive(clap::Args)]
 pub(crate) struct Arguments {
@@ -37,9 +37,9 @@ pub(crate) struct Arguments {
 
 pub(crate) fn run(arguments: &Arguments) -> Result {
     let program = load::program(&arguments.file)?;
-    let (mut cell, cell_name) = workcell(arguments, &program)?;
-    let mut machine = load::machine(&program, &cell, &cell_name)?;
-    head(arguments, &cell_name);
+    let (mut cell, file) = workcell(arguments, &program)?;
+    let mut machine = load::machine(&program, &cell, &file)?;
+    head(arguments, &file.name);
     let ending = go(arguments, &mut machine, Direction::Forward, &mut cell);
     let recorded = record(arguments, &program, &machine, &cell, &ending);
     finish(arguments, &machine, &cell, &ending, recorded.as_ref().err());
@@ -63,12 +63,11 @@ pub(crate) fn outcome(is_done: bool, recorded: std::result::Result<(), Problem>)
 pub(crate) fn workcell(
     arguments: &Arguments,
     program: &Program,
-) -> std::result::Result<(Sim, String), Problem> {
+) -> std::result::Result<(Sim, Workcell), Problem> {
     let named = arguments.cell.as_deref();
     if let Some(tape) = &arguments.tape {
         let cell = load::workcell_path(program, named);
-        let inputs: Vec<&Path> =
-            std::iter::once(program.path.as_path()).chain(cell.as_deref()).collect();
+        let inputs: Vec<PathBuf> = program.files().into_iter().chain(cell).collect();
         write::check(tape, "tape", &inputs)?;
     }
     load::workcell(program, named, arguments.seed)

@@ -24,9 +24,24 @@ pub(crate) struct KeyframeFlow {
     asked: HashMap<Parameter, Vec<(KeyframeId, Span)>>,
     passed: HashMap<Parameter, Vec<Parameter>>,
     given: Vec<(ItemId, Parameter, Span)>,
+    /// By item, where it is declared.
+    declared: Vec<Span>,
 }
 
 impl KeyframeFlow {
+    /// The next item is declared here.
+    pub(crate) fn declare(&mut self, at: Span) {
+        self.declared.push(at);
+    }
+
+    /// With the place where the item is declared, which may be in another file.
+    pub(crate) fn with_item(&self, diagnostic: Diagnostic, item: ItemId) -> Diagnostic {
+        match self.declared.get(item.index()) {
+            Some(at) => diagnostic.with_label(*at, "the item is declared here"),
+            None => diagnostic,
+        }
+    }
+
     /// A keyframe of a parameter is moved to.
     pub(crate) fn ask(&mut self, parameter: Parameter, keyframe: KeyframeId, at: Span) {
         self.asked.entry(parameter).or_default().push((keyframe, at));
@@ -81,10 +96,10 @@ impl KeyframeFlow {
                     "the item `{}` has no keyframe `{name}`, and what it is passed to needs one",
                     declared.name
                 );
-                reports.add(
+                let diagnostic =
                     Diagnostic::error(Code::UnknownKeyframe, at, message, "passed here")
-                        .with_label(asked_at, "the keyframe is moved to here"),
-                );
+                        .with_label(asked_at, "the keyframe is moved to here");
+                reports.add(self.with_item(diagnostic, item));
             }
             for &next in self.passed.get(&parameter).into_iter().flatten() {
                 if seen.insert(next) {

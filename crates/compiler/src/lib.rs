@@ -1,14 +1,18 @@
 //! Source text to module: resolve, check units and types, lower to statements.
 //!
-//! [`compile`] is the way in. Read `types` and `units`, then `check` (syntax tree to checked tree),
-//! `effects` (errors and barriers across calls), `lower` (checked tree to code). Knows nothing of
-//! machines and robots; the parser is `obverse-syntax`.
+//! [`compile`] is the way in, and [`compile_files`] for a program of several files, which `load`
+//! gathers and `merge` makes one tree of. Read `types` and `units`, then `check` (syntax tree to
+//! checked tree), `effects` (errors and barriers across calls), `lower` (checked tree to code).
+//! Knows nothing of machines and robots; the parser is `obverse-syntax`.
 
 mod check;
 mod effects;
 mod fold;
 mod keyframes;
+mod load;
 mod lower;
+mod merge;
+mod path;
 mod recursion;
 mod report;
 mod response;
@@ -17,38 +21,59 @@ mod tree;
 mod types;
 mod units;
 
+pub use load::{Loader, MAX_IMPORT_DEPTH, MAX_IMPORTED};
+
 use effects::Effects;
+use load::Loaded;
 use obverse_bytecode::Module;
 use obverse_syntax::diagnostic::{Diagnostic, Severity};
+use obverse_syntax::sources::Sources;
 use report::Reports;
 
-/// What became of a source text.
+/// What became of a program's text.
 #[derive(Clone, Debug)]
 pub struct Compiled {
     /// The module, if there is no error. It keeps the rules of the verifier.
     pub module: Option<Module>,
     /// What is wrong with the program, by place; at most a few hundred. Warnings are among them.
+    /// Its places are those of the sources.
     pub diagnostics: Vec<Diagnostic>,
+    /// The files that were read, each as it was read. The first is the one that was asked for.
+    pub sources: Sources,
 }
 
-/// Compile a source text; `source_name` is how messages call it. Never fails and never panics.
+/// Compile a source text that imports nothing; `name` is how messages call it. Never fails and
+/// never panics.
 #[must_use]
-pub fn compile(source_name: &str, source: &str) -> Compiled {
-    let parsed = obverse_syntax::parse(source);
+pub fn compile(name: &str, source: &str) -> Compiled {
+    compile_files(name, source, &mut load::OneFile)
+}
+
+/// Compile a source text and all that it imports; `name` is that of its file, in the folder that
+/// `loader` reads from. Never fails and never panics.
+pub fn compile_files(name: &str, source: &str, loader: &mut dyn Loader) -> Compiled {
+    let loaded = load::load(name, source, loader);
+    let (module, diagnostics) = compile_loaded(&loaded);
+    Compiled { module, diagnostics, sources: loaded.sources }
+}
+
+fn compile_loaded(loaded: &Loaded) -> (Option<Module>, Vec<Diagnostic>) {
+    let sources = &loaded.sources;
+    let parsed = merge::parse(loaded);
     let is_whole = parsed.diagnostics.iter().all(|found| found.severity != Severity::Error);
     let reports = Reports::new(is_whole);
-    let (program, mut reports) = check::check(source_name, source, &parsed.program, reports);
+    let (program, mut reports) = check::check(sources, &parsed.program, reports);
     let module = program.filter(|_| is_whole).and_then(|program| {
         let effects = Effects::of(&program);
         reversal::check(&program, &effects, &mut reports);
         recursion::check(&program, &effects, &mut reports);
         match reports.has_errors() {
             true => None,
-            false => lower::lower(program, &effects, &mut reports),
+            false => lower::lower(program, sources, &effects, &mut reports),
         }
     });
     let mut diagnostics = parsed.diagnostics;
     diagnostics.extend(reports.into_diagnostics());
     diagnostics.sort_by_key(|diagnostic| diagnostic.primary.span);
-    Compiled { module, diagnostics }
+    (module, diagnostics)
 }

@@ -32,6 +32,6 @@ mod sweep;
 mod travel;
 mod world;
 
-pub use cell::{Cell, CellError};
+pub use cell::{Cell, CellError, CellPlaces};
 pub use faults::FaultPlan;
 pub use sim::Sim;

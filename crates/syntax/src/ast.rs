@@ -21,6 +21,10 @@ pub struct Program<'s> {
 pub enum Item<'s> {
     /// `cell "peg_in_hole.toml"`
     Cell(Spanned<&'s str>),
+    /// `import "poses.obv"`: what is declared there, as if it stood here.
+    Import(Spanned<&'s str>),
+    /// `output gripper = 0`, `input part_present = 3`
+    Signal(SignalDeclaration<'s>),
     /// `io gripper_open { set 0 low; sleep 0.5 s } reverse gripper_close`
     Io(IoOperation<'s>),
     /// `joints start = [3.425, -1.0, 1.2, -1.8, -1.57, 0.3] rad`
@@ -35,6 +39,37 @@ pub enum Item<'s> {
     Variable(VariableDeclaration<'s>),
     /// `sequence main { … }`, or `action pick(part: item) { … }`
     Sequence(Sequence<'s>),
+}
+
+/// A name for a line of the workcell: an entry of an I/O map.
+#[derive(Clone, Debug, PartialEq)]
+pub struct SignalDeclaration<'s> {
+    /// Its name.
+    pub name: Name<'s>,
+    /// Whether it is an output or an input.
+    pub kind: SignalKind,
+    /// Its number in the workcell, from 0.
+    pub number: Spanned<u64>,
+    /// The whole declaration.
+    pub span: Span,
+}
+
+/// Which way a line of the workcell goes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum SignalKind {
+    /// The program sets it.
+    Output,
+    /// The program reads it.
+    Input,
+}
+
+/// An output or an input where it is used.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Signal<'s> {
+    /// `set 0 high`: its number in the workcell.
+    Number(u64),
+    /// `set gripper high`: its name in the program.
+    Name(&'s str),
 }
 
 /// An I/O operation (the paper's rule IO).
@@ -56,7 +91,7 @@ pub enum Primitive<'s> {
     /// `set 0 low`
     Set {
         /// Which output.
-        bit: Spanned<u64>,
+        bit: Spanned<Signal<'s>>,
         /// High or low.
         high: bool,
         /// The primitive.
@@ -65,7 +100,7 @@ pub enum Primitive<'s> {
     /// `toggle 3`
     Toggle {
         /// Which output.
-        bit: Spanned<u64>,
+        bit: Spanned<Signal<'s>>,
         /// The primitive.
         span: Span,
     },
@@ -440,7 +475,7 @@ pub enum StatementKind<'s> {
     /// `wait until input 3 high for up to 2 s else { … }`
     WaitUntil {
         /// Which input.
-        input: Spanned<u64>,
+        input: Spanned<Signal<'s>>,
         /// High or low.
         high: bool,
         /// The longest time.
@@ -631,7 +666,7 @@ pub enum ExpressionKind<'s> {
         arguments: Vec<Expression<'s>>,
     },
     /// `input 3`: whether it is high.
-    Input(Spanned<u64>),
+    Input(Spanned<Signal<'s>>),
     /// `force`: the filtered contact force now; in an advanced move's queries, the peak of it.
     Force,
     /// `distance`: how far the last move came.

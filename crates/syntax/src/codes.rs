@@ -2,8 +2,8 @@
 //!
 //! A code is stable: a row may be reworded, but its code is never given another meaning nor used
 //! again. `E00xx` is text and grammar, `E01xx` names, `E02xx` types and units, `E03xx` statements,
-//! structure and errors, `E04xx` reversal, `W0xxx` warnings. It knows nothing of how a mistake is
-//! found or shown.
+//! structure and errors, `E04xx` reversal, `E05xx` files, `W0xxx` warnings. It knows
+//! nothing of how a mistake is found or shown.
 
 macro_rules! codes {
     ($($name:ident $code:literal $title:literal
@@ -455,10 +455,41 @@ codes! {
         wrong "sequence main { skip in reverse { barrier \"glued\" } }"
         right "sequence main { skip in reverse { wait 1 s } barrier \"glued\" }"
 
+    // E05xx: files.
+    CannotImport "E0501" "a file that cannot be imported"
+        why "The file is not there, cannot be read, is too large, or is no text; which of these is \
+             said. A path begins at the folder of the file that it is written in. Each file is \
+             read once, however often it is imported."
+        wrong "import \"poses.obv\"\n\
+               sequence main { wait 1 s }"
+        right "sequence main { wait 1 s }"
+    ImportPath "E0502" "a path that no import can have"
+        why "A program is what is in its folder and below: the folder of the file that is checked \
+             or run. So it is the same wherever it is copied to, and a program from elsewhere \
+             reads nothing of yours. A path begins at the folder of the file that it is written \
+             in and has `/` between folders on every system; `..` may lead up, but not out of the \
+             program's folder. Nor may a link of the file system."
+        wrong "import \"../poses.obv\"\n\
+               sequence main { wait 1 s }"
+        right "sequence main { wait 1 s }"
+    ImportCycle "E0503" "files that import one another"
+        why "An import stands for the declarations of the file that it names; a file that imports \
+             itself, by way of others or not, would stand for more than any file holds. \
+             Declarations see one another whichever file they are in, so that a file need not \
+             import what it uses if the one that imports it does."
+        wrong ""
+        right ""
+    TooManyImports "E0504" "too many files, or too large together"
+        why "A program imports at most 1000 files, of which 64 import one another in a row; all \
+             its files have at most 256 MiB together."
+        wrong ""
+        right ""
+
     // W0xxx: warnings.
     Unused "W0001" "something that is never used"
         why "It may have been forgotten, or what should use it is misspelt. A variable that is \
-             only assigned is not used. A name that begins with `_` is never warned about."
+             only assigned is not used. A name that begins with `_` is never warned about, nor is \
+             what an imported file declares, since it may serve other programs as well."
         wrong "sequence main { var count = 0 count += 1 }"
         right "sequence main { var count = 0 count += 1 if count > 0 { wait 1 s } }"
     Unreachable "W0002" "statements that are never reached"
@@ -492,4 +523,14 @@ codes! {
                sequence main { call blink }"
         right "sequence blink { loop { toggle 0 wait 1 s } }\n\
                sequence main { call blink }"
+    TwoNames "W0501" "two names for one output or input"
+        why "An I/O map says what each line of the workcell is for. Two names for one line are \
+             mostly a number that was copied and not changed: the program would set a lamp where \
+             it means the gripper."
+        wrong "output gripper = 0\n\
+               output lamp = 0\n\
+               sequence main { set gripper high set lamp high }"
+        right "output gripper = 0\n\
+               output lamp = 1\n\
+               sequence main { set gripper high set lamp high }"
 }

@@ -154,6 +154,9 @@ const STATEMENTS: &[&str] = &[
     "advanced",
     "sequence",
     "action",
+    "import",
+    "output",
+    "input",
     ";",
 ];
 

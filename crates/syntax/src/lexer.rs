@@ -16,6 +16,8 @@ use logos::Logos;
 /// The tokens of a source text.
 pub(crate) struct Lexer<'s, 'k> {
     source: &'s str,
+    /// Where the text begins in the source.
+    start: usize,
     tokens: logos::Lexer<'s, Token>,
     sink: &'k Sink<'s>,
     nesting: Nesting,
@@ -27,16 +29,25 @@ pub(crate) struct Lexer<'s, 'k> {
 }
 
 impl<'s, 'k> Lexer<'s, 'k> {
-    /// Reads a text, after its byte order mark if it has one.
-    pub(crate) fn new(source: &'s str, sink: &'k Sink<'s>) -> Self {
+    /// Reads the text that begins at an offset, after its byte order mark if it has one.
+    pub(crate) fn new(source: &'s str, start: usize, sink: &'k Sink<'s>) -> Self {
         let mut tokens = Token::lexer(source);
-        if source.starts_with('\u{FEFF}') {
-            tokens.bump('\u{FEFF}'.len_utf8());
-        }
+        let has_mark = source.get(start..).is_some_and(|text| text.starts_with('\u{FEFF}'));
+        tokens.bump(start + if has_mark { '\u{FEFF}'.len_utf8() } else { 0 });
         let nesting = Nesting::default();
         let (before_previous, previous) = (Token::Semicolon, Token::Semicolon);
-        let (previous_end, has_ended) = (0, false);
-        Self { source, tokens, sink, nesting, before_previous, previous, previous_end, has_ended }
+        let (previous_end, has_ended) = (start, false);
+        Self {
+            source,
+            start,
+            tokens,
+            sink,
+            nesting,
+            before_previous,
+            previous,
+            previous_end,
+            has_ended,
+        }
     }
 
     /// The next token as the grammar knows it; none where what was read is left out.
@@ -247,7 +258,7 @@ impl<'s, 'k> Lexer<'s, 'k> {
         }
         let end = self.source.len() as u32;
         if !std::mem::replace(&mut self.has_ended, true)
-            && let Some(diagnostic) = Surroundings::new(self.source).unclosed_at(end)
+            && let Some(diagnostic) = Surroundings::new(self.source, self.start).unclosed_at(end)
         {
             self.sink.ends_early(diagnostic, end);
         }

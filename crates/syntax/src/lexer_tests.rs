@@ -5,7 +5,7 @@ use Token::*;
 
 fn lex(source: &str) -> (Vec<(Token, &str)>, Vec<Code>) {
     let sink = Sink::default();
-    let tokens = Lexer::new(source, &sink)
+    let tokens = Lexer::new(source, 0, &sink)
         .map_while(Result::ok)
         .map(|(start, token, end)| (token, &source[start as usize..end as usize]))
         .collect();

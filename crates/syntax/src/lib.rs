@@ -1,29 +1,34 @@
 //! Source text to syntax tree: lexer, grammar, tree, spans, diagnostics.
 //!
-//! [`parse`] is the way in; GRAMMAR.md beside this crate has the grammar on a page. What a program
-//! means (names, types, units, reversal) is not known here.
+//! [`parse`] is the way in, and [`parse_file`] for one file of several; GRAMMAR.md
+//! beside this crate has the grammar on a page. What a program means (names, types, units,
+//! reversal) is not known here.
 
 pub mod ast;
 pub mod codes;
 pub mod diagnostic;
 mod expectation;
 mod foreign;
+mod imports;
 mod lexer;
 mod nearest;
 mod nesting;
 mod parse_error;
 mod sink;
 pub mod source;
+pub mod sources;
 pub mod span;
 mod surroundings;
 mod token;
 mod tree;
 
+pub use imports::imports;
 pub use nearest::nearest;
 pub use token::{FREE_WORDS, RESERVED_WORDS, UNITS};
 
 use codes::Code;
 use diagnostic::Diagnostic;
+use sources::Sources;
 use span::Span;
 
 lalrpop_util::lalrpop_mod!(
@@ -40,7 +45,7 @@ lalrpop_util::lalrpop_mod!(
     grammar
 );
 
-/// The largest source text that is read, in bytes.
+/// The largest source text that is read, in bytes; all files of a program together.
 pub const MAX_SOURCE_BYTES: usize = 256 << 20;
 
 /// How deep blocks, brackets and the links of `else if` chains may be in one another.
@@ -64,17 +69,31 @@ pub struct Parsed<'s> {
 /// twenty mistakes are reported, and reading ends there.
 #[must_use]
 pub fn parse(source: &str) -> Parsed<'_> {
-    if let Some(diagnostic) = refuse(source) {
+    parse_from(source, 0)
+}
+
+/// The tree of one file of several; its places are in the space of all of them. Imports stand in
+/// it as written.
+#[must_use]
+pub fn parse_file(sources: &Sources, file: usize) -> Parsed<'_> {
+    let range = sources.range(file);
+    let whole = sources.whole();
+    parse_from(whole.get(..range.end).unwrap_or(whole), range.start)
+}
+
+/// The tree of what stands from an offset to the end of the source.
+fn parse_from(source: &str, start: usize) -> Parsed<'_> {
+    if let Some(diagnostic) = refuse(source, start) {
         return Parsed { diagnostics: vec![diagnostic], ..Parsed::default() };
     }
     let sink = sink::Sink::default();
-    let result =
-        grammar::ProgramParser::new().parse(source, &sink, lexer::Lexer::new(source, &sink));
+    let lexer = lexer::Lexer::new(source, start, &sink);
+    let result = grammar::ProgramParser::new().parse(source, &sink, lexer);
     let program = result.map_err(|error| sink.unexpected(error, source.len() as u32));
     let (diagnostics, syntax_errors, misplaced) = sink.into_parts();
     let mut program = program.unwrap_or_default();
     program.items.extend(misplaced);
-    let diagnostics = parse_error::explain(source, diagnostics, &syntax_errors);
+    let diagnostics = parse_error::explain(source, start, diagnostics, &syntax_errors);
     Parsed { program, diagnostics }
 }
 
@@ -92,14 +111,14 @@ pub fn text_of(bytes: &[u8]) -> Result<&str, Box<Diagnostic>> {
 }
 
 /// Why a text is not read at all.
-fn refuse(source: &str) -> Option<Diagnostic> {
+fn refuse(source: &str, start: usize) -> Option<Diagnostic> {
     if source.len() > MAX_SOURCE_BYTES {
         let message = format!("this source text has {} bytes", source.len());
-        let diagnostic =
-            Diagnostic::error(Code::SourceTooLarge, Span::default(), message, "too large");
+        let span = Span::new(start as u32, start as u32);
+        let diagnostic = Diagnostic::error(Code::SourceTooLarge, span, message, "too large");
         return Some(diagnostic.with_note(format!("the limit is {MAX_SOURCE_BYTES} bytes")));
     }
-    let zero = source.bytes().position(|byte| byte == 0)?;
+    let zero = start + source.get(start..)?.bytes().position(|byte| byte == 0)?;
     let span = Span::new(zero as u32, zero as u32 + 1);
     let diagnostic = Diagnostic::error(Code::NotText, span, "this file is not text", "a NUL byte");
     Some(diagnostic.with_help("give a source text, not a module or a tape"))

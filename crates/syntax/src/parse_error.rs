@@ -14,14 +14,16 @@ use crate::tree;
 /// The words for a direction that could be taken for the name of a distance.
 const DIRECTIONS: [&str; 7] = ["forward", "backward", "backwards", "left", "right", "up", "down"];
 
-/// All diagnostics of a text by place: those that have been worded, and those of syntax errors.
+/// All diagnostics of the text that begins at an offset, by place: those that have
+/// been worded, and those of syntax errors.
 pub(crate) fn explain(
     source: &str,
+    start: usize,
     mut diagnostics: Vec<Diagnostic>,
     errors: &[SyntaxError],
 ) -> Vec<Diagnostic> {
     if !errors.is_empty() {
-        let surroundings = Surroundings::new(source);
+        let surroundings = Surroundings::new(source, start);
         for error in errors {
             let mistake = Mistake {
                 error,
@@ -277,6 +279,7 @@ impl Mistake<'_> {
             Token::Move => "advance",
             Token::Error => "throw",
             Token::Joints => "move to",
+            Token::Output => return Some(format!("set {name} high")),
             _ => return None,
         };
         Some(format!("{verb} {name}"))

@@ -23,9 +23,11 @@ pub(crate) struct Surroundings<'s> {
 }
 
 impl<'s> Surroundings<'s> {
-    /// Reads the text.
-    pub(crate) fn new(source: &'s str) -> Self {
-        let tokens = Token::lexer(source).spanned().filter_map(|(token, range)| {
+    /// Reads the text that begins at an offset.
+    pub(crate) fn new(source: &'s str, start: usize) -> Self {
+        let mut lexer = Token::lexer(source);
+        lexer.bump(start);
+        let tokens = lexer.spanned().filter_map(|(token, range)| {
             let span = Span::new(range.start as u32, range.end as u32);
             token.ok().map(|token| Placed { token, span })
         });
@@ -158,7 +160,7 @@ mod tests {
 
     #[test]
     fn the_innermost_open_bracket_is_found() {
-        let surroundings = Surroundings::new("a { ( b ) [ c } d");
+        let surroundings = Surroundings::new("a { ( b ) [ c } d", 0);
         let at = |offset| surroundings.innermost_open(offset).map(|token| token.span.start);
         assert_eq!(at(0), None);
         assert_eq!(at(7), Some(4));
@@ -169,7 +171,8 @@ mod tests {
 
     #[test]
     fn indentation_tells_the_bracket_that_is_not_closed() {
-        let unclosed = |source| Surroundings::new(source).likely_unclosed().map(|span| span.start);
+        let unclosed =
+            |source| Surroundings::new(source, 0).likely_unclosed().map(|span| span.start);
         assert_eq!(unclosed("a {\n  b {\n    c\n  d {\n  }\n}\n"), Some(8));
         assert_eq!(unclosed("a {\n  b {\n  }\n"), Some(2));
         assert_eq!(unclosed("a { b }"), None);

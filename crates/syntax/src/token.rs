@@ -100,10 +100,10 @@ tokens! {
         Backward "backward" Backwards "backwards" Base "base" By "by" Cell "cell"
         Continue "continue" Current "current" Down "down" Ending "ending" Entered "entered"
         Error "error" Escalating "escalating" Failure "failure" Fast "fast" Fatal "fatal"
-        Forward "forward" From "from" High "high" In "in" Initial "initial" Item "item"
-        Joints "joints" Keyframe "keyframe" Learned "learned" Left "left" Lighter "lighter"
-        Linearly "linearly" Low "low" Normal "normal" Of "of" On "on" Once "once"
-        Operator "operator" Otherwise "otherwise" Perturbation "perturbation"
+        Forward "forward" From "from" High "high" Import "import" In "in" Initial "initial"
+        Item "item" Joints "joints" Keyframe "keyframe" Learned "learned" Left "left"
+        Lighter "lighter" Linearly "linearly" Low "low" Normal "normal" Of "of" On "on" Once "once"
+        Operator "operator" Otherwise "otherwise" Output "output" Perturbation "perturbation"
         Perturbed "perturbed" Position "position" Program "program" Recover "recover"
         Recoverable "recoverable" Requires "requires" Respond "respond" Restart "restart"
         Reverse "reverse" Reversible "reversible" Reversing "reversing" Right "right"
@@ -161,7 +161,7 @@ impl Token {
     pub(crate) fn wants_operand(self, before: Self) -> bool {
         use Token::*;
         match self {
-            Assign | AddAssign | SubtractAssign | If | While | Wait | Sleep => true,
+            Assign | AddAssign | SubtractAssign | If | While | Wait | Sleep | Input => true,
             When => matches!(before, Ending | Entered),
             _ => self.is_operator(),
         }

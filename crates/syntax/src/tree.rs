@@ -2,8 +2,8 @@
 //! mistakes that the grammar accepts in order to say clearly what is wrong with them.
 
 use crate::ast::{
-    BinaryOperator, Block, Expression, ExpressionKind, Item, Name, Statement, StatementKind,
-    UnaryOperator,
+    BinaryOperator, Block, Expression, ExpressionKind, Item, Name, SignalKind, Statement,
+    StatementKind, UnaryOperator,
 };
 use crate::codes::Code;
 use crate::diagnostic::Diagnostic;
@@ -242,6 +242,11 @@ pub(crate) fn statement_outside(sink: &Sink<'_>, span: Span) {
 pub(crate) fn declaration_inside<'s>(sink: &Sink<'s>, item: Item<'s>, start: u32) {
     let (word, end) = match &item {
         Item::Cell(path) => ("cell", path.span.end),
+        Item::Import(path) => ("import", path.span.end),
+        Item::Signal(signal) => match signal.kind {
+            SignalKind::Output => ("output", signal.name.span.end),
+            SignalKind::Input => ("input", signal.name.span.end),
+        },
         Item::Io(io) => ("io operation", io.name.span.end),
         Item::Joints(joints) => ("joint configuration", joints.name.span.end),
         Item::ItemDeclaration(item) => ("item", item.name.span.end),

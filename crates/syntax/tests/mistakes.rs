@@ -66,7 +66,8 @@ fn at_most_three_things_are_expected_and_none_is_a_token_of_the_parser() {
         ("end", "expected a statement or `}`, found `end`"),
         ("a = 3 4", "expected a statement, `}` or an operator, found `4`"),
         ("a = = 3", "expected a value, found `=`"),
-        ("set x high", "expected a whole number, found `x`"),
+        ("set \"x\" high", "expected a name or a whole number, found a text in quotes"),
+        ("set x hihg", "expected `high` or `low`, found `hihg`"),
         ("set 0 3", "expected `high` or `low`, found `3`"),
         ("speed quick", "expected a speed, found `quick`"),
         ("move 1 mm sideways", "expected a direction or an operator, found `sideways`"),
@@ -83,6 +84,8 @@ fn at_most_three_things_are_expected_and_none_is_a_token_of_the_parser() {
     assert_eq!(message, "expected a declaration, found `frobnicate`");
     let message = mistake("error e { colour }").message;
     assert_eq!(message, "expected a clause or `}`, found `colour`");
+    let message = mistake("output lamp = x").message;
+    assert_eq!(message, "expected a whole number, found `x`");
     let message = mistake("joints a = 3").message;
     assert_eq!(message, "expected `[`, found `3`");
 }

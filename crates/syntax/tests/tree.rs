@@ -30,6 +30,13 @@ fn with_statement(body: &str, check: impl FnOnce(StatementKind<'_>)) {
     });
 }
 
+fn signal(signal: Signal<'_>) -> String {
+    match signal {
+        Signal::Number(number) => number.to_string(),
+        Signal::Name(name) => name.to_owned(),
+    }
+}
+
 /// An expression with brackets around every operation, numbers as they are.
 fn show(expression: &Expression<'_>) -> String {
     let list =
@@ -47,7 +54,7 @@ fn show(expression: &Expression<'_>) -> String {
         ExpressionKind::Function { name, arguments } => {
             format!("{}({})", name.value, list(arguments))
         }
-        ExpressionKind::Input(index) => format!("input {}", index.value),
+        ExpressionKind::Input(line) => format!("input {}", signal(line.value)),
         ExpressionKind::Force => "force".to_owned(),
         ExpressionKind::Distance => "distance".to_owned(),
         ExpressionKind::Holding => "holding".to_owned(),
@@ -136,6 +143,56 @@ fn a_cell_is_a_path() {
 }
 
 #[test]
+fn an_import_is_a_path() {
+    let Item::Import(path) = item("import \"poses/left.obv\"") else { panic!() };
+    assert_eq!(path.value, "poses/left.obv");
+}
+
+#[test]
+fn an_entry_of_an_io_map_has_a_name_and_a_number() {
+    let entries = [
+        ("output gripper = 0", SignalKind::Output, "gripper", 0),
+        ("input part_present = 3", SignalKind::Input, "part_present", 3),
+        ("input high = 4", SignalKind::Input, "high", 4),
+        ("output output = 5", SignalKind::Output, "output", 5),
+    ];
+    for (source, kind, name, number) in entries {
+        let Item::Signal(entry) = item(source) else { panic!("{source}") };
+        assert_eq!((entry.kind, entry.name.value, entry.number.value), (kind, name, number));
+    }
+}
+
+#[test]
+fn outputs_and_inputs_are_used_by_name_as_by_number() {
+    let body = "set lamp high toggle lamp; wait until input ready low for up to 2 s";
+    with_statements(body, |statements| {
+        let names = statements.iter().map(|statement| match statement {
+            StatementKind::Primitive(
+                Primitive::Set { bit, .. } | Primitive::Toggle { bit, .. },
+            ) => signal(bit.value),
+            StatementKind::WaitUntil { input, .. } => signal(input.value),
+            other => panic!("{other:?}"),
+        });
+        assert_eq!(names.collect::<Vec<_>>(), ["lamp", "lamp", "ready"]);
+    });
+    assert_eq!(expression("input ready and not input 3"), "(input ready And (Not input 3))");
+}
+
+#[test]
+fn each_file_of_several_is_read_alone() {
+    let mut sources = obverse_syntax::sources::Sources::one("a", "var a = 1 // {");
+    sources.add("b", "\u{FEFF}var b = 2");
+    sources.add("c", "sequence c {");
+    let parsed = [0, 1, 2].map(|file| obverse_syntax::parse_file(&sources, file));
+    let [Item::Variable(b)] = &parsed[1].program.items[..] else { panic!("{parsed:?}") };
+    assert_eq!(&sources.whole()[b.name.span.start as usize..b.name.span.end as usize], "b");
+    assert_eq!((parsed[0].diagnostics.len(), parsed[1].diagnostics.len()), (0, 0));
+    let [unclosed] = &parsed[2].diagnostics[..] else { panic!("{parsed:?}") };
+    assert_eq!(sources.locate(unclosed.primary.span).file, 2);
+    assert_eq!(sources.locate(unclosed.labels[0].span).file, 2);
+}
+
+#[test]
 fn an_io_operation_has_primitives_and_a_counterpart() {
     let Item::Io(io) = item("io open { set 0 low; toggle 3 sleep 0.5 s } reverse close") else {
         panic!()
@@ -149,7 +206,8 @@ fn an_io_operation_has_primitives_and_a_counterpart() {
     else {
         panic!("{:?}", io.primitives)
     };
-    assert_eq!((bit.value, toggled.value, show(duration)), (0, 3, "0.5s".to_owned()));
+    let signals = [signal(bit.value), signal(toggled.value)];
+    assert_eq!((signals, show(duration)), (["0", "3"].map(str::to_owned), "0.5s".to_owned()));
 }
 
 #[test]
@@ -414,7 +472,7 @@ fn outline(statement: &Statement<'_>) -> String {
         StatementKind::Io(name) => format!("io:{}", name.value),
         StatementKind::Wait(duration) => format!("wait:{}", show(duration)),
         StatementKind::WaitUntil { input, high, timeout, otherwise } => {
-            format!("until:{}:{high}:{}{}", input.value, show(timeout), optional(otherwise))
+            format!("until:{}:{high}:{}{}", signal(input.value), show(timeout), optional(otherwise))
         }
         StatementKind::Primitive(_) => "primitive".to_owned(),
         StatementKind::Variable(variable) => format!("var:{}", variable.name.value),

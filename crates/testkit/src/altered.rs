@@ -5,8 +5,8 @@ use crate::Ledger;
 use crate::code::{self, Options};
 use arbitrary::{Result, Unstructured};
 use obverse_bytecode::{
-    Constant, Continuation, Function, Item, Module, Otherwise, Recovery, Respond, SourceEntry,
-    Verified, encode, fingerprint, verify,
+    Constant, Continuation, Function, Item, Mention, Mentioned, Module, Otherwise, Recovery,
+    Respond, SourceEntry, Verified, encode, fingerprint, verify,
 };
 use obverse_isa::{Instr, Type};
 use obverse_tape::{ForkSnapshot, FrameSnapshot, Snapshot, Streams, TapeFile};
@@ -146,6 +146,8 @@ fn alter_map(u: &mut Unstructured<'_>, module: &mut Module) -> Result<()> {
         let (first, start) = (near(u, 0)?, u.arbitrary()?);
         let (file, end) = (u.arbitrary()?, u.arbitrary()?);
         module.source_map.push(SourceEntry { first, file, start, end, action: None });
+        let what = Mentioned::Item(u.arbitrary()?);
+        module.mentions.push(Mention { what, file, start, end });
     }
     Ok(())
 }

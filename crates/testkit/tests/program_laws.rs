@@ -1,7 +1,7 @@
 //! The laws over generated programs, on a few hundred programs that are the same every time.
 
 use arbitrary::{Result, Unstructured};
-use obverse_testkit::laws;
+use obverse_testkit::{files, laws};
 
 /// How many programs each law is held against.
 const PROGRAMS: u64 = 400;
@@ -33,6 +33,11 @@ fn hold(law: fn(&mut Unstructured<'_>) -> Result<bool>) {
 #[test]
 fn every_program_compiles() {
     hold(laws::compiles);
+}
+
+#[test]
+fn a_program_in_files_is_the_program() {
+    hold(files::files_are_one_program);
 }
 
 #[test]

@@ -1,8 +1,9 @@
 //! Linking: a module's names to a workcell's numbers, once, before anything moves.
 
-use obverse_bytecode::Module;
+use obverse_bytecode::{Mentioned, Module};
 use obverse_isa::{Instr, Setting};
 use obverse_workcell::{ItemId, Workcell};
+use std::collections::BTreeMap;
 use std::fmt;
 
 /// What a module's items and tools are in a workcell.
@@ -20,17 +21,27 @@ pub struct Links {
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum LinkError {
     /// An item.
-    Item(String),
+    Item {
+        /// Its name.
+        name: String,
+        /// Which of the module's items.
+        index: u16,
+    },
     /// A tool.
-    Tool(String),
-    /// A digital output: the one asked for at an instruction, and how many there are.
+    Tool {
+        /// Its name.
+        name: String,
+        /// Which of the module's tools.
+        index: u16,
+    },
+    /// A digital output: which, and how many there are.
     Output {
         /// Which.
         bit: u16,
         /// How many there are.
         count: u16,
-        /// The instruction.
-        pc: u32,
+        /// The first instruction that needs it; none where it is only named.
+        pc: Option<u32>,
     },
     /// A digital input.
     Input {
@@ -38,16 +49,16 @@ pub enum LinkError {
         bit: u16,
         /// How many there are.
         count: u16,
-        /// The instruction.
-        pc: u32,
+        /// The first instruction that needs it; none where it is only named.
+        pc: Option<u32>,
     },
 }
 
 impl fmt::Display for LinkError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            Self::Item(name) => write!(f, "the workcell has no item `{name}`; name it in its file"),
-            Self::Tool(name) => write!(f, "the workcell has no tool `{name}`; name it in its file"),
+            Self::Item { name, .. } => write!(f, "the workcell has no item `{name}`"),
+            Self::Tool { name, .. } => write!(f, "the workcell has no tool `{name}`"),
             Self::Output { bit, count, .. } => {
                 write!(f, "there is no output {bit}: the workcell has {count}, numbered from 0")
             }
@@ -68,37 +79,54 @@ impl Links {
     pub fn new(module: &Module, cell: &dyn Workcell) -> Result<Self, Vec<LinkError>> {
         let mut errors = Vec::new();
         let mut links = Self::default();
-        for item in &module.items {
+        for (item, index) in module.items.iter().zip(0..) {
             match cell.item(&item.name) {
                 Some(found) => links.items.push(found),
-                None => errors.push(LinkError::Item(item.name.clone())),
+                None => errors.push(LinkError::Item { name: item.name.clone(), index }),
             }
         }
-        for tool in &module.tools {
+        for (tool, index) in module.tools.iter().zip(0..) {
             match cell.tool(tool) {
                 Some(found) => links.tools.push(u64::from(found.0)),
-                None => errors.push(LinkError::Tool(tool.clone())),
+                None => errors.push(LinkError::Tool { name: tool.clone(), index }),
             }
         }
-        for (pc, instr) in module.code.iter().enumerate() {
-            errors.extend(missing_line(pc as u32, instr, cell));
-        }
+        errors.extend(missing_lines(module, cell));
         links.settings[Setting::Speed as usize] = obverse_isa::SpeedId::Normal as u64;
         links.settings[Setting::Tool as usize] = u64::from(cell.initial_tool().0);
         if errors.is_empty() { Ok(links) } else { Err(errors) }
     }
 }
 
-fn missing_line(pc: u32, instr: &Instr, cell: &dyn Workcell) -> Option<LinkError> {
-    match *instr {
-        Instr::OutputSet { bit, .. } | Instr::OutputToggle { bit, .. } => {
-            let count = cell.output_count();
-            (bit.0 >= count).then_some(LinkError::Output { bit: bit.0, count, pc })
+/// The outputs and inputs that are not there, each once: those that the code needs, and those that
+/// the program's I/O map names.
+fn missing_lines(module: &Module, cell: &dyn Workcell) -> Vec<LinkError> {
+    let outputs = |bit: u16| bit >= cell.output_count();
+    let inputs = |bit: u16| bit >= cell.input_count();
+    let (mut no_outputs, mut no_inputs) = (BTreeMap::new(), BTreeMap::new());
+    for (pc, instr) in (0..).zip(&module.code) {
+        match *instr {
+            Instr::OutputSet { bit, .. } | Instr::OutputToggle { bit, .. } if outputs(bit.0) => {
+                no_outputs.entry(bit.0).or_insert(Some(pc));
+            }
+            Instr::SenseInput { bit, .. } | Instr::WaitInput { bit, .. } if inputs(bit.0) => {
+                no_inputs.entry(bit.0).or_insert(Some(pc));
+            }
+            _ => {}
         }
-        Instr::SenseInput { bit, .. } | Instr::WaitInput { bit, .. } => {
-            let count = cell.input_count();
-            (bit.0 >= count).then_some(LinkError::Input { bit: bit.0, count, pc })
-        }
-        _ => None,
     }
+    for mention in &module.mentions {
+        match mention.what {
+            Mentioned::Output { bit, .. } if outputs(bit) => {
+                no_outputs.entry(bit).or_insert(None);
+            }
+            Mentioned::Input { bit, .. } if inputs(bit) => {
+                no_inputs.entry(bit).or_insert(None);
+            }
+            _ => {}
+        }
+    }
+    let output = |(bit, pc)| LinkError::Output { bit, count: cell.output_count(), pc };
+    let input = |(bit, pc)| LinkError::Input { bit, count: cell.input_count(), pc };
+    no_outputs.into_iter().map(output).chain(no_inputs.into_iter().map(input)).collect()
 }

@@ -2,6 +2,7 @@
 //! that names something.
 
 use super::error::{AsmError, Errors, shown, unknown};
+use super::mention;
 use super::quote::{is_bare, unquote};
 use super::scan::{Scanner, Token};
 use crate::module::{
@@ -87,6 +88,7 @@ const DIRECTIVES: &[&str] = &[
     ".keyframe",
     ".local",
     ".map",
+    ".mention",
     ".otherwise",
     ".parameter",
     ".parameters",
@@ -254,6 +256,10 @@ impl<'t> Reader<'t> {
             ".map" => {
                 let first = line.number("instruction")?;
                 self.map_entry(first, line)
+            }
+            ".mention" => {
+                self.declared.module.mentions.push(mention::read(line)?);
+                Ok(line.end()?)
             }
             ".source" => {
                 let name = line.name("name of the source file")?;

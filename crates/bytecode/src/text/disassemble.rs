@@ -1,6 +1,7 @@
 //! The disassembler: a module as text. Knows nothing of how text is read.
 
 use super::listing::{Section, SourceComments, name};
+use super::mention;
 use super::names::{Names, Scope};
 use super::quote::{is_plain, quoted};
 use super::words::{self, Word};
@@ -27,6 +28,10 @@ pub fn disassemble(module: &Module) -> String {
     for file in &module.sources {
         source_file(file, &mut out);
     }
+    if !module.mentions.is_empty() {
+        out.push('\n');
+    }
+    mention::write(&module.mentions, &mut out);
     out
 }
 

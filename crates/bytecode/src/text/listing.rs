@@ -196,7 +196,11 @@ impl<'m> SourceComments<'m> {
         let number = lines.partition_point(|&begin| begin <= start);
         let begin = *lines.get(number.checked_sub(1)?)?;
         let end = lines.get(number).copied().unwrap_or(text.len());
-        (start <= text.len()).then(|| format!("{number} | {}", excerpt(&text[begin..end])))
+        let file = match self.module.sources.len() {
+            1 => String::new(),
+            _ => format!("{}:", excerpt(&self.module.sources[usize::from(entry.file)].name)),
+        };
+        (start <= text.len()).then(|| format!("{file}{number} | {}", excerpt(&text[begin..end])))
     }
 }
 

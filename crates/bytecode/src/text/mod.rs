@@ -34,6 +34,8 @@
 //!     store.local x                      an effect: it ends the statement
 //! .source "NAME"
 //! | a line of its text                   `|"..."` with escapes where a line is not plain
+//! .mention WHAT FILE START END           where the program speaks of its workcell; WHAT is `cell`,
+//!                                        `item N`, `tool N`, `output "NAME" N`, `input "NAME" N`
 //! ```
 //!
 //! DEPTH is `fixed`, `escalating` or `learned`; EXTENT is `actions N`, `checkpoint NAME` or
@@ -55,6 +57,7 @@ mod declare;
 mod disassemble;
 mod error;
 mod listing;
+mod mention;
 mod names;
 mod nearest;
 mod quote;

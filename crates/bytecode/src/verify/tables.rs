@@ -1,7 +1,7 @@
 //! Rules 1, 2 and 9: tables, functions, source map. Knows nothing of what instructions mean.
 
 use super::{Findings, Rule};
-use crate::module::{FunctionKind, Module, Otherwise, Recovery, Variable};
+use crate::module::{FunctionKind, Mention, Mentioned, Module, Otherwise, Recovery, Variable};
 use crate::{Extent, Function};
 use obverse_isa::{Instr, Type};
 use std::collections::HashSet;
@@ -12,6 +12,7 @@ pub(super) fn check(module: &Module, findings: &mut Findings) {
     errors(module, findings);
     functions(module, findings);
     source_map(module, findings);
+    mentions(module, findings);
 }
 
 fn lengths(module: &Module, findings: &mut Findings) {
@@ -183,6 +184,24 @@ fn ends(module: &Module, function: &Function, is_start: bool, findings: &mut Fin
                 "enter, return and halt stand at the ends of functions",
             );
         }
+    }
+}
+
+/// Of messages alone, but those must not lead astray either.
+fn mentions(module: &Module, findings: &mut Findings) {
+    let is_wrong = |mention: &&Mention| {
+        let text = module.sources.get(usize::from(mention.file)).map(|file| file.text.as_str());
+        let span = mention.start as usize..mention.end as usize;
+        let is_there = match mention.what {
+            Mentioned::Item(item) => usize::from(item) < module.items.len(),
+            Mentioned::Tool(tool) => usize::from(tool) < module.tools.len(),
+            Mentioned::Cell => module.cell.is_some(),
+            Mentioned::Output { .. } | Mentioned::Input { .. } => true,
+        };
+        !is_there || text.is_none_or(|text| text.get(span).is_none())
+    };
+    if let Some(index) = module.mentions.iter().position(|mention| is_wrong(&mention)) {
+        findings.of_module(Rule::SourceMap, format!("mention {index} makes no sense"));
     }
 }
 

@@ -47,6 +47,14 @@ fn places_are_lines_and_characters() {
     assert_eq!(module.place_of(0), None);
     assert_eq!(module.place_of(1), Some(("s", 1, 1)));
     assert_eq!(module.place_of(3), Some(("s", 2, 2)));
+    // Whatever ends the lines: the place is the second character of the last of them.
+    for (text, start) in [("move\rx\u{fc}", 6), ("move\r\nx\u{fc}", 7), ("\n\rmove", 3)] {
+        module.sources[0].text = text.to_owned();
+        module.source_map[1].start = start;
+        let line = if text.starts_with('\n') { 3 } else { 2 };
+        assert_eq!(module.place_of(3), Some(("s", line, 2)), "{text:?}");
+    }
+    let mut module = self::module();
     // In the middle of a character, behind the text, and in no file.
     for (file, start) in [(0, 6), (0, 99), (1, 0)] {
         module.source_map[1] = SourceEntry { file, start, ..module.source_map[1] };

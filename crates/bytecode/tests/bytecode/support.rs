@@ -4,8 +4,8 @@
 use arbitrary::{Result, Unstructured};
 use obverse_bytecode::{
     ActionKind, Constant, Continuation, Depth, ErrorDeclaration, Extent, Function, FunctionKind,
-    Item, Keyframe, Module, Otherwise, Recovery, Respond, Reversal, Severity, SourceEntry,
-    SourceFile, Variable,
+    Item, Keyframe, Mention, Mentioned, Module, Otherwise, Recovery, Respond, Reversal, Severity,
+    SourceEntry, SourceFile, Variable,
 };
 use obverse_isa::{Instr, OPS, Opcode, OperandError, OperandKind, Type};
 
@@ -107,6 +107,18 @@ fn errors() -> Vec<ErrorDeclaration> {
     recoveries.into_iter().enumerate().map(declaration).collect()
 }
 
+fn mentions() -> [Mention; 5] {
+    let (lamp, part) = ("the \"lamp\"".to_owned(), "part".to_owned());
+    [
+        Mentioned::Cell,
+        Mentioned::Item(1),
+        Mentioned::Tool(u16::MAX),
+        Mentioned::Output { name: lamp, bit: 2 },
+        Mentioned::Input { name: part, bit: 0 },
+    ]
+    .map(|what| Mention { what, file: 2, start: 1, end: 0 })
+}
+
 /// A module with something in every table, and names that are hard to write.
 pub(crate) fn everything() -> Module {
     let code = every_instruction();
@@ -162,6 +174,7 @@ pub(crate) fn everything() -> Module {
             entry(1, 1000, Some(ActionKind::Wait)),
             SourceEntry { first: end, file: 9, start: 7, end: 3, action: Some(ActionKind::Io) },
         ],
+        mentions: mentions().to_vec(),
     }
 }
 
@@ -332,5 +345,9 @@ pub(crate) fn arbitrary_module(u: &mut Unstructured) -> Result<Module> {
         functions: functions(u, end)?,
         code,
         source_map: arbitrary_map(u, end)?,
+        mentions: some(u, 4, |u| {
+            let what = u.choose(&mentions())?.what.clone();
+            Ok(Mention { what, file: index(u)?, start: u.arbitrary()?, end: u.arbitrary()? })
+        })?,
     })
 }

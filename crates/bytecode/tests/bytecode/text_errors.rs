@@ -150,6 +150,14 @@ fn directives() {
     says(".item i\n.at #0 0 0", "11: the position in metres is missing");
     says(".item i\n.at #70000 0", "5: 70000 is no index: there are at most 65536");
     says(".item i\n.then stop", "1: what an error does follows its `.error`");
+    let of_what = "a mention is of a cell, an item, a tool, an output or an input";
+    says(".mention lamp 0 0 0", &format!("10: {of_what}"));
+    says(
+        ".mention output 7 0 0 0",
+        "17: `7` is no name of the output; a name that is no word needs quotes",
+    );
+    says(".mention item 65536 0 0 0", "15: `65536` is no item: a number from 0 to 65535");
+    says(".mention cell 0 0", "18: the end is missing");
     says(".tool", "6: the name of the tool is missing");
     says(".tool 7up", "7: `7up` is no name of the tool; a name that is no word needs quotes");
     says(".tool \"a", "7: the quote is not closed on this line");

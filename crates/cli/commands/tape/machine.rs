@@ -17,7 +17,8 @@ pub(super) fn show(shown: &Shown<'_>, records: Option<usize>) {
             "type": "record",
             "instruction": entry.pc,
             "opcode": module.code[entry.pc as usize].info().mnemonic,
-            "line": lines.of(entry.pc),
+            "file": lines.of(entry.pc).map(|(file, _)| file),
+            "line": lines.of(entry.pc).map(|(_, line)| line),
             "bits": entry.bits,
             "record": entry.what,
         });
@@ -68,7 +69,8 @@ fn by_instruction(shown: &Shown<'_>, lines: &mut Lines<'_>) -> Value {
         json!({
             "instruction": pc,
             "opcode": shown.module.code[*pc as usize].info().mnemonic,
-            "line": lines.of(*pc),
+            "file": lines.of(*pc).map(|(file, _)| file),
+            "line": lines.of(*pc).map(|(_, line)| line),
             "text": said(shown.module, *pc),
             "records": cost.records,
             "bits": cost.bits,

@@ -27,8 +27,9 @@ pub(super) fn show(shown: &Shown<'_>, records: usize) {
 fn show_records(shown: &Shown<'_>, records: usize) {
     let (module, entries) = (shown.module, &shown.walk.entries);
     let mut lines = Lines::new(module);
+    let width = lines.width();
     write::line(&format!(
-        "\n{:>6}  {:18} {:>5}  {:40} record, newest first",
+        "\n{:>6}  {:18} {:>width$}  {:40} record, newest first",
         "instr", "opcode", "line", "source"
     ));
     for entry in entries.iter().take(records) {
@@ -44,8 +45,8 @@ fn show_records(shown: &Shown<'_>, records: usize) {
 /// An instruction, with its opcode, line and source text, in columns.
 fn placed(module: &Module, lines: &mut Lines<'_>, pc: u32) -> String {
     let mnemonic = module.code[pc as usize].info().mnemonic;
-    let line = lines.of(pc).map_or_else(String::new, |line| line.to_string());
-    format!("{pc:>6}  {mnemonic:18} {line:>5}  {:40}", said(module, pc))
+    let (line, width) = (lines.shown(pc), lines.width());
+    format!("{pc:>6}  {mnemonic:18} {line:>width$}  {:40}", said(module, pc))
 }
 
 fn by_opcode(shown: &Shown<'_>) {
@@ -60,8 +61,9 @@ fn by_opcode(shown: &Shown<'_>) {
 fn by_instruction(shown: &Shown<'_>) {
     let all = &shown.costs.by_instruction;
     let mut lines = Lines::new(shown.module);
+    let width = lines.width();
     write::line(&format!(
-        "\n{:>6}  {:18} {:>5}  {:40} {:>8} {:>10}",
+        "\n{:>6}  {:18} {:>width$}  {:40} {:>8} {:>10}",
         "instr", "opcode", "line", "source", "records", "bits"
     ));
     for (pc, cost) in all.iter().take(INSTRUCTIONS) {

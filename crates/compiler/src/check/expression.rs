@@ -6,7 +6,7 @@ use super::names::{Found, Meaning};
 use crate::tree::{Expression, ExpressionKind, Hoist, Prepared};
 use crate::types::ValueType;
 use crate::units::Unit;
-use obverse_isa::{Bit, Instr, LocalId};
+use obverse_isa::{Instr, LocalId};
 use obverse_syntax::ast;
 use obverse_syntax::codes::Code;
 use obverse_syntax::diagnostic::Diagnostic;
@@ -173,7 +173,7 @@ impl<'s> Checker<'s> {
                 self.function_call(*name, arguments, span)
             }
             ast::ExpressionKind::Input(line) => {
-                let bit = self.line(*line);
+                let bit = self.input(*line);
                 let read = |local| Instr::SenseInput { local, bit };
                 self.reading(ValueType::Bool, span, "an input", read)
             }
@@ -205,15 +205,6 @@ impl<'s> Checker<'s> {
         let message = "this is no finite real; the largest is about 1.8e308".to_owned();
         self.reports.error(Code::OutOfRange, span, message, "not finite");
         Expression::missing(span)
-    }
-
-    /// An input or output of the workcell.
-    pub(super) fn line(&mut self, line: Spanned<u64>) -> Bit {
-        Bit(u16::try_from(line.value).unwrap_or_else(|_| {
-            let message = format!("there is no line {}; they go from 0 to 65535", line.value);
-            self.reports.error(Code::OutOfRange, line.span, message, "no line has this number");
-            0
-        }))
     }
 
     fn force(&mut self, span: Span) -> Expression {

@@ -161,7 +161,8 @@ impl<'s> Checker<'s> {
 
     /// What stands before a block.
     pub(super) fn header(&self, start: u32, block: Span) -> Span {
-        let text = self.source.get(start as usize..block.start as usize).unwrap_or_default();
+        let text =
+            self.sources.whole().get(start as usize..block.start as usize).unwrap_or_default();
         let length = u32::try_from(text.trim_end().len()).unwrap_or(0);
         Span::new(start, start + length)
     }

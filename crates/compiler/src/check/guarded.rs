@@ -183,7 +183,7 @@ impl<'s> Checker<'s> {
     }
 
     fn requires(&mut self, condition: &ast::Expression<'s>, span: Span) -> (Prepared, ReasonId) {
-        let source = self.source;
+        let source = self.sources.whole();
         let text = source.get(condition.span.start as usize..condition.span.end as usize);
         let words: Vec<&str> = text.unwrap_or_default().split_whitespace().collect();
         let reason = format!("{} requires {}", self.frame.name, words.join(" "));

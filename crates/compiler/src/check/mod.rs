@@ -14,6 +14,7 @@ mod motion;
 mod names;
 mod operators;
 mod program;
+mod signals;
 mod statement;
 
 use crate::keyframes::KeyframeFlow;
@@ -24,9 +25,10 @@ use frame::FrameScope;
 use names::{Found, Meaning, Names};
 use obverse_bytecode::Module;
 use obverse_isa::{FunctionId, LocalId, Type};
-use obverse_syntax::ast::Name;
+use obverse_syntax::ast::{Name, SignalKind};
 use obverse_syntax::codes::Code;
 use obverse_syntax::diagnostic::Diagnostic;
+use obverse_syntax::sources::Sources;
 use obverse_syntax::span::Span;
 use std::collections::{BTreeSet, HashMap};
 
@@ -51,11 +53,13 @@ struct Interned<'s> {
 
 /// What has been found out so far.
 struct Checker<'s> {
-    source: &'s str,
+    sources: &'s Sources,
     reports: Reports,
     names: Names<'s>,
     module: Module,
     interned: Interned<'s>,
+    /// The names of outputs and inputs, by number.
+    signals: HashMap<(SignalKind, u16), Name<'s>>,
     /// By function; the start has none.
     signatures: Vec<Signature>,
     /// By function; those of replacements come at the end.

@@ -178,8 +178,9 @@ impl<'s> Checker<'s> {
 
     fn report_no_keyframe(&mut self, item: Name<'s>, keyframe: Name<'s>, declared: ItemId) {
         let message = format!("the item `{}` has no keyframe `{}`", item.value, keyframe.value);
-        let mut diagnostic =
+        let diagnostic =
             Diagnostic::error(Code::UnknownKeyframe, keyframe.span, message, "not one of its own");
+        let mut diagnostic = self.keyframes.with_item(diagnostic, declared);
         let known = self.known_keyframes(declared);
         let meant = self.reports.meant(keyframe.value, known.iter().map(String::as_str));
         diagnostic = match meant {

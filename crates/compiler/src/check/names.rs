@@ -1,7 +1,9 @@
 //! Names: what each means, where it is seen, whether it is used. Knows nothing of statements.
 
 use crate::types::ValueType;
-use obverse_isa::{CounterId, ErrorId, FunctionId, GlobalId, ItemId, JointsId, LocalId, SlotId};
+use obverse_isa::{
+    Bit, CounterId, ErrorId, FunctionId, GlobalId, ItemId, JointsId, LocalId, SlotId,
+};
 use obverse_syntax::ast::Name;
 use obverse_syntax::span::Span;
 use std::collections::HashMap;
@@ -11,6 +13,10 @@ use std::collections::HashMap;
 pub(crate) enum Meaning {
     /// An I/O operation.
     Io(FunctionId),
+    /// An output of the workcell.
+    Output(Bit),
+    /// An input of the workcell.
+    Input(Bit),
     /// A joint configuration.
     Joints(JointsId),
     /// An item.
@@ -38,6 +44,8 @@ impl Meaning {
     pub(crate) fn kind(self) -> &'static str {
         match self {
             Self::Io(_) => "an I/O operation",
+            Self::Output(_) => "an output",
+            Self::Input(_) => "an input",
             Self::Joints(_) => "a joint configuration",
             Self::Item(_) | Self::Local(_, ValueType::Item) => "an item",
             Self::Error(_) => "an error",
@@ -54,6 +62,8 @@ impl Meaning {
     pub(crate) fn use_of(self, name: &str) -> Option<String> {
         match self {
             Self::Io(_) => Some(format!("`io {name}`")),
+            Self::Output(_) => Some(format!("`set {name} high`")),
+            Self::Input(_) => Some(format!("`input {name}`")),
             Self::Joints(_) | Self::Position(_) => Some(format!("`move to {name}`")),
             Self::Item(_) | Self::Local(_, ValueType::Item) => {
                 Some(format!("`move to {name}.KEYFRAME`, or as an argument"))
@@ -63,6 +73,11 @@ impl Meaning {
             Self::Sequence(_) | Self::Action(_) => Some(format!("`call {name}`")),
             _ => None,
         }
+    }
+
+    /// Whether it is declared at the top of a file.
+    pub(crate) fn is_declared(self) -> bool {
+        !self.is_of_frame()
     }
 
     fn is_of_frame(self) -> bool {

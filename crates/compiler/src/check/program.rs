@@ -5,25 +5,26 @@ use super::frame::FrameScope;
 use super::names::{Found, Meaning, Names};
 use super::{Checker, Interned, Signature};
 use crate::keyframes::KeyframeFlow;
+use crate::path;
 use crate::report::{Reports, warning};
 use crate::tree;
 use crate::types::{TYPE_NAMES, ValueType};
-use obverse_bytecode::{Module, SourceFile};
+use obverse_bytecode::{Mentioned, Module, SourceFile};
 use obverse_isa::{ErrorId, FunctionId, GlobalId, ItemId, JointsId};
 use obverse_syntax::ast::{Item, Name, Program, Sequence};
 use obverse_syntax::codes::Code;
 use obverse_syntax::diagnostic::Diagnostic;
+use obverse_syntax::sources::Sources;
 use obverse_syntax::span::Span;
-use std::collections::BTreeSet;
+use std::collections::{BTreeSet, HashMap};
 
 /// Check a program; without mistakes there is a checked tree.
 pub(crate) fn check<'s>(
-    source_name: &str,
-    source: &'s str,
+    sources: &'s Sources,
     program: &Program<'s>,
     reports: Reports,
 ) -> (Option<tree::Program>, Reports) {
-    let mut checker = Checker::new(source_name, source, reports);
+    let mut checker = Checker::new(sources, reports);
     checker.declare_items(program);
     checker.check_declarations(program);
     checker.check_bodies(program);
@@ -47,14 +48,19 @@ pub(crate) fn check<'s>(
 const MAX_FUNCTIONS: usize = 65_535;
 
 impl<'s> Checker<'s> {
-    fn new(source_name: &str, source: &'s str, reports: Reports) -> Self {
-        let file = SourceFile { name: source_name.to_owned(), text: source.to_owned() };
+    fn new(sources: &'s Sources, reports: Reports) -> Self {
+        let file = |index| SourceFile {
+            name: sources.name(index).to_owned(),
+            text: sources.text(index).to_owned(),
+        };
+        let files = (0..sources.len()).map(file).collect();
         Self {
-            source,
+            sources,
             reports,
             names: Names::default(),
-            module: Module { sources: vec![file], ..Module::default() },
+            module: Module { sources: files, ..Module::default() },
             interned: Interned::default(),
+            signals: HashMap::new(),
             signatures: vec![Signature::default()],
             functions: Vec::new(),
             first_values: Vec::new(),
@@ -76,8 +82,11 @@ impl<'s> Checker<'s> {
                         self.report_twice("cell", file.span, first);
                     }
                     cell = Some(file.span);
-                    self.module.cell = Some(file.value.to_owned());
+                    self.declare_cell(*file);
                 }
+                // What it stands for is there in its place.
+                Item::Import(_) => {}
+                Item::Signal(entry) => self.declare_signal(entry),
                 Item::Io(io) => _ = self.declare_function(io.name, Meaning::Io),
                 Item::AdvancedMove(guarded) => {
                     _ = self.declare_function(guarded.name, Meaning::Guarded);
@@ -103,10 +112,19 @@ impl<'s> Checker<'s> {
         }
     }
 
+    /// `cell "peg_in_hole.toml"`: relative to the file that it is written in.
+    fn declare_cell(&mut self, file: Name<'s>) {
+        let importer = self.sources.name(self.sources.locate(file.span).file);
+        self.module.cell = Some(path::beside(importer, file.value));
+        self.mention(Mentioned::Cell, file.span);
+    }
+
     fn declare_item(&mut self, name: Name<'s>) {
         let id = self.index(self.module.items.len(), "items", name.span);
         let item = obverse_bytecode::Item { name: name.value.to_owned(), keyframes: Vec::new() };
         self.module.items.push(item);
+        self.mention(Mentioned::Item(id), name.span);
+        self.keyframes.declare(name.span);
         self.declare(name, Meaning::Item(ItemId(id)));
     }
 
@@ -182,7 +200,11 @@ impl<'s> Checker<'s> {
                 Item::Variable(variable) => self.check_global(variable),
                 Item::Io(io) => self.check_counterpart(io),
                 Item::Error(error) => self.check_error(error),
-                Item::Cell(_) | Item::AdvancedMove(_) | Item::Sequence(_) => {}
+                Item::Cell(_)
+                | Item::Import(_)
+                | Item::Signal(_)
+                | Item::AdvancedMove(_)
+                | Item::Sequence(_) => {}
             }
         }
     }
@@ -227,8 +249,9 @@ impl<'s> Checker<'s> {
                 _ => {}
             }
         }
+        // Of the file that was asked for: what it imports serves other programs as well.
         let sequences = program.items.iter().rev().filter_map(|item| match item {
-            Item::Sequence(sequence) => Some(sequence),
+            Item::Sequence(sequence) if self.is_own(sequence.span) => Some(sequence),
             _ => None,
         });
         let mut candidates =
@@ -239,21 +262,30 @@ impl<'s> Checker<'s> {
         {
             return Some(id);
         }
-        self.report_no_main();
+        self.report_no_main(program);
         None
     }
 
-    fn report_no_main(&mut self) {
-        let end = u32::try_from(self.source.trim_end().len()).unwrap_or(u32::MAX);
+    fn report_no_main(&mut self, program: &Program<'s>) {
+        let end = u32::try_from(self.sources.text(0).trim_end().len()).unwrap_or(u32::MAX);
         let message = "there is no sequence that the program could begin with".to_owned();
-        let diagnostic = Diagnostic::error(
+        let mut diagnostic = Diagnostic::error(
             Code::NoMain,
             Span::new(end, end),
             message,
             "the file ends without one",
         )
         .with_help("write `sequence main { .. }`");
+        if !program.items.is_empty() {
+            let why = "a file that others import is checked with the program that imports it";
+            diagnostic = diagnostic.with_note(why);
+        }
         self.reports.add(diagnostic);
+    }
+
+    /// Whether something stands in the file that was asked for, not in one that it imports.
+    fn is_own(&self, span: Span) -> bool {
+        self.sources.locate(span).file == 0
     }
 
     /// A recovery can only go back to a checkpoint that is set somewhere.
@@ -284,14 +316,17 @@ impl<'s> Checker<'s> {
         for symbol in self.names.all() {
             let name = symbol.name.value;
             let is_main = matches!(symbol.meaning, Meaning::Sequence(id) if Some(id) == main);
-            if symbol.is_used || is_main || name.starts_with('_') {
+            let is_offered = symbol.meaning.is_declared() && !self.is_own(symbol.name.span);
+            if symbol.is_used || is_main || is_offered || name.starts_with('_') {
                 continue;
             }
             let (kind, use_) = match symbol.meaning {
                 Meaning::Sequence(_) | Meaning::Action(_) => (symbol.meaning.kind(), "called"),
                 Meaning::Error(_) => ("an error", "thrown"),
                 Meaning::Global(..) | Meaning::Local(..) => ("a variable", "read"),
-                Meaning::Item(_) | Meaning::Counter(_) => continue,
+                // What the workcell has is not the program's to leave out.
+                Meaning::Item(_) | Meaning::Output(_) | Meaning::Input(_) => continue,
+                Meaning::Counter(_) => continue,
                 _ => (symbol.meaning.kind(), "used"),
             };
             let message = format!("`{name}` is {kind} that is never {use_}");

@@ -10,10 +10,11 @@ use crate::tree::{
     Block, Expression, ExpressionKind, Place, SettingValue, Statement, StatementKind,
 };
 use crate::types::ValueType;
+use obverse_bytecode::Mentioned;
 use obverse_isa::{
     FunctionId, Instr, Level, LocalId, ReasonId, Setting, SlotId, SpeedId, ToolId, Type,
 };
-use obverse_syntax::ast::{self, AssignOperator, Name, Primitive, SpeedWord};
+use obverse_syntax::ast::{self, AssignOperator, Name, Primitive, Signal, SpeedWord};
 use obverse_syntax::codes::Code;
 use obverse_syntax::diagnostic::Diagnostic;
 use obverse_syntax::span::{Span, Spanned};
@@ -173,13 +174,13 @@ impl<'s> Checker<'s> {
 
     fn wait_until(
         &mut self,
-        input: Spanned<u64>,
+        input: Spanned<Signal<'s>>,
         high: bool,
         timeout: &ast::Expression<'s>,
         otherwise: Option<&ast::Block<'s>>,
         span: Span,
     ) -> Checked {
-        let bit = self.line(input);
+        let bit = self.input(input);
         let header = Span::new(span.start, timeout.span.end);
         let timeout = self.duration(timeout, "`wait until`");
         let came = self.temporary(Type::Bool, header);
@@ -200,7 +201,7 @@ impl<'s> Checker<'s> {
         before: Option<&mut Statement>,
     ) -> Option<Statement> {
         let output = |checker: &mut Self, bit, level, span| {
-            let bit = checker.line(bit);
+            let bit = checker.output(bit);
             let settle = Expression::real(0.0, ValueType::TIME, span);
             Some(checker.done(StatementKind::Output { bit, level, settle }, span))
         };
@@ -403,6 +404,7 @@ impl<'s> Checker<'s> {
         }
         let index = self.index(self.module.tools.len(), "tools", name.span);
         self.module.tools.push(name.value.to_owned());
+        self.mention(Mentioned::Tool(index), name.span);
         self.interned.tools.insert(name.value, index);
         ToolId(index)
     }

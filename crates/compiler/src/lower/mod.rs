@@ -21,6 +21,7 @@ use frame::Frame;
 use obverse_bytecode::{ActionKind, CodeBuilder, Constant, Module, SourceEntry, Variable};
 use obverse_isa::{ConstantId, GlobalId, Instr, Type};
 use obverse_syntax::codes::Code;
+use obverse_syntax::sources::Sources;
 use obverse_syntax::span::Span;
 use std::collections::HashMap;
 
@@ -28,8 +29,13 @@ use std::collections::HashMap;
 const MAX_INSTRUCTIONS: u32 = 1 << 22;
 
 /// The module of a program; none if a limit is reached, which is reported.
-pub(crate) fn lower(program: Program, effects: &Effects, reports: &mut Reports) -> Option<Module> {
-    let mut lower = Lower::new(&program, effects, reports);
+pub(crate) fn lower(
+    program: Program,
+    sources: &Sources,
+    effects: &Effects,
+    reports: &mut Reports,
+) -> Option<Module> {
+    let mut lower = Lower::new(&program, sources, effects, reports);
     lower.start();
     for (id, function) in program.numbered() {
         lower.function(id, function);
@@ -50,6 +56,7 @@ pub(crate) fn lower(program: Program, effects: &Effects, reports: &mut Reports) 
 /// What a lowering is under way with.
 struct Lower<'p> {
     program: &'p Program,
+    sources: &'p Sources,
     effects: &'p Effects,
     reports: &'p mut Reports,
     code: CodeBuilder,
@@ -98,11 +105,17 @@ impl HiddenGlobals {
 }
 
 impl<'p> Lower<'p> {
-    fn new(program: &'p Program, effects: &'p Effects, reports: &'p mut Reports) -> Self {
+    fn new(
+        program: &'p Program,
+        sources: &'p Sources,
+        effects: &'p Effects,
+        reports: &'p mut Reports,
+    ) -> Self {
         let globals = HiddenGlobals::of(program, effects);
         let global_count = program.module.globals.len() + globals.variables.len();
         let mut lower = Self {
             program,
+            sources,
             effects,
             reports,
             code: CodeBuilder::new(),
@@ -120,11 +133,15 @@ impl<'p> Lower<'p> {
 
     /// What follows is of this place in the source.
     fn at(&mut self, span: Span, action: Option<ActionKind>) {
-        let (first, start, end) = (self.code.here(), span.start, span.end);
-        let entry = SourceEntry { first, file: 0, start, end, action };
+        let place = self.sources.locate(span);
+        let (first, Span { start, end }) = (self.code.here(), place.span);
+        // There are far fewer files than an index can say.
+        let file = u16::try_from(place.file).unwrap_or(u16::MAX);
+        let entry = SourceEntry { first, file, start, end, action };
         match self.source_map.last_mut() {
             Some(last) if last.first == first => *last = entry,
-            Some(last) if (last.start, last.end) == (start, end) && action.is_none() => {}
+            Some(last)
+                if (last.file, last.start, last.end) == (file, start, end) && action.is_none() => {}
             _ => self.source_map.push(entry),
         }
     }

@@ -8,10 +8,12 @@ mod build;
 mod error;
 mod file;
 mod number;
+mod places;
 #[cfg(test)]
 mod tests;
 
 pub use error::CellError;
+pub use places::CellPlaces;
 
 use obverse_geometry::{JOINT_COUNT, JointConfiguration, Pose};
 use std::f64::consts::{PI, TAU};

@@ -20,6 +20,9 @@ impl Generator<'_, '_> {
         for _ in 0..self.below(6)? {
             items.push(self.global()?);
         }
+        for _ in 0..self.below(4)? {
+            items.push(self.signal_entry()?);
+        }
         for _ in 0..self.below(3)? {
             items.push(self.io_operation()?);
         }
@@ -88,6 +91,25 @@ impl Generator<'_, '_> {
         self.line(&format!("var {name}{declared} = {value}"));
         self.globals.push(Variable { name, of_type, is_free: true });
         Ok(self.taken())
+    }
+
+    /// An entry of an I/O map. Lines may have several names.
+    fn signal_entry(&mut self) -> Result<String> {
+        let word = self.choose(&["output", "input"])?;
+        let (name, bit) = (self.name(word), self.below(8)?);
+        self.line(&format!("{word} {name} = {bit}"));
+        match word {
+            "output" => self.outputs.push(name),
+            _ => self.inputs.push(name),
+        }
+        Ok(self.taken())
+    }
+
+    /// A line of the workcell by its number, or by one of these names.
+    pub(super) fn signal(&mut self, names: &[String]) -> Result<String> {
+        let bit = self.below(8)?;
+        let is_named = !names.is_empty() && self.one_in(2)?;
+        if is_named { self.choose(names) } else { Ok(bit.to_string()) }
     }
 
     fn io_operation(&mut self) -> Result<String> {

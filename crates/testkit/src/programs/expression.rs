@@ -229,7 +229,7 @@ impl Generator<'_, '_> {
         if self.frame.may_read && self.one_in(3)? {
             return Ok(match self.below(3)? {
                 0 => "holding".to_owned(),
-                _ => format!("input {}", self.below(8)?),
+                _ => format!("input {}", self.signal(&self.inputs.clone())?),
             });
         }
         let literal = self.choose(&["true", "false"])?.to_owned();

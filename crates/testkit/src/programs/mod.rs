@@ -51,6 +51,14 @@ const MAX_COST: u64 = 2_000;
 /// # Errors
 /// Only those of the randomness; when it runs out, the text is ended.
 pub fn generate(u: &mut Unstructured<'_>, options: Options) -> Result<String> {
+    Ok(declarations(u, options)?.concat())
+}
+
+/// The declarations of a random program, in their order.
+///
+/// # Errors
+/// As [`generate`].
+pub fn declarations(u: &mut Unstructured<'_>, options: Options) -> Result<Vec<String>> {
     Generator::new(u, options).program()
 }
 
@@ -79,6 +87,8 @@ struct Generator<'g, 'u> {
     globals: Vec<Variable>,
     joints: Vec<String>,
     items: Vec<String>,
+    outputs: Vec<String>,
+    inputs: Vec<String>,
     io: Vec<String>,
     errors: Vec<String>,
     moves: Vec<String>,
@@ -98,6 +108,8 @@ impl<'g, 'u> Generator<'g, 'u> {
             globals: Vec::new(),
             joints: Vec::new(),
             items: Vec::new(),
+            outputs: Vec::new(),
+            inputs: Vec::new(),
             io: Vec::new(),
             errors: Vec::new(),
             moves: Vec::new(),
@@ -106,7 +118,7 @@ impl<'g, 'u> Generator<'g, 'u> {
         }
     }
 
-    fn program(&mut self) -> Result<String> {
+    fn program(&mut self) -> Result<Vec<String>> {
         let mut items = self.data()?;
         for index in 0..self.below(4)? {
             let is_recursive = self.one_in(3)?;
@@ -119,7 +131,9 @@ impl<'g, 'u> Generator<'g, 'u> {
         // Declarations see each other in any order.
         let turn = self.below(items.len())?;
         items.rotate_left(turn);
-        Ok(items.join("\n"))
+        // A line between them.
+        items.iter_mut().for_each(|item| item.push('\n'));
+        Ok(items)
     }
 
     /// A number below a bound, small where randomness has run out.

@@ -84,7 +84,7 @@ impl Generator<'_, '_> {
 
     /// `set 0 high`, `toggle 3`, perhaps with its settling time.
     pub(super) fn output(&mut self) -> Result<()> {
-        let bit = self.below(8)?;
+        let bit = self.signal(&self.outputs.clone())?;
         match self.below(3)? {
             0 => self.line(&format!("toggle {bit}")),
             1 => self.line(&format!("set {bit} low")),

@@ -100,7 +100,7 @@ impl Generator<'_, '_> {
     fn wait(&mut self) -> Result<()> {
         let time = self.duration()?;
         if self.frame.nesting < 4 && self.one_in(2)? {
-            let bit = self.below(8)?;
+            let bit = self.signal(&self.inputs.clone())?;
             let level = self.choose(&["low", "high"])?;
             let wait = format!("wait until input {bit} {level} for up to {time}");
             if self.one_in(2)? {

@@ -79,7 +79,7 @@ impl<'p> Interpreter<'p, '_> {
             StatementKind::Break => Ok(Flow::Break),
             StatementKind::Return => Ok(Flow::Return),
             StatementKind::WaitUntil { input, high, timeout, otherwise } => {
-                let line = (input.value, *high);
+                let line = (self.names.line(input.value), *high);
                 match self.wait_until(line, timeout, otherwise.as_ref())? {
                     Some(otherwise) => self.block(otherwise),
                     None => Ok(Flow::Next),

@@ -132,8 +132,7 @@ impl<'p> Interpreter<'p, '_> {
                 }
             }
             ExpressionKind::Input(line) => {
-                let bit = u16::try_from(line.value).unwrap_or(u16::MAX);
-                Value::Bool(self.cell.input(bit)?)
+                Value::Bool(self.cell.input(self.names.line(line.value))?)
             }
             ExpressionKind::Force => Value::Real(match self.judged {
                 Some(report) => report.peak_force_n,

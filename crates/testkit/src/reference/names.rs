@@ -5,7 +5,7 @@ use super::value::{Value, si};
 use obverse_geometry::{JointConfiguration, Pose};
 use obverse_syntax::ast::{
     AdvancedMove, ErrorDeclaration, Expression, IoOperation, Item, ItemDeclaration, Program,
-    Sequence, Vector,
+    Sequence, Signal, Vector,
 };
 use std::collections::HashMap;
 
@@ -16,6 +16,8 @@ pub(super) struct Names<'p> {
     pub(super) errors: HashMap<&'p str, &'p ErrorDeclaration<'p>>,
     pub(super) moves: HashMap<&'p str, &'p AdvancedMove<'p>>,
     pub(super) sequences: HashMap<&'p str, &'p Sequence<'p>>,
+    /// The numbers of outputs and inputs.
+    signals: HashMap<&'p str, u64>,
     /// In the order of their declarations.
     pub(super) joints: Vec<(&'p str, JointConfiguration)>,
     /// In the order of their declarations.
@@ -39,7 +41,10 @@ impl<'p> Names<'p> {
                     names.joints.push((joints.name.value, values));
                 }
                 Item::ItemDeclaration(item) => names.items.push(item),
-                Item::Cell(_) | Item::Variable(_) => {}
+                Item::Signal(entry) => {
+                    names.signals.insert(entry.name.value, entry.number.value);
+                }
+                Item::Cell(_) | Item::Import(_) | Item::Variable(_) => {}
             }
         }
         names
@@ -52,6 +57,15 @@ impl<'p> Names<'p> {
         if is_candidate && self.main.is_none_or(|known| known.name.value != "main") {
             self.main = Some(sequence);
         }
+    }
+
+    /// The number of an output or an input.
+    pub(super) fn line(&self, signal: Signal<'_>) -> u16 {
+        let number = match signal {
+            Signal::Number(number) => Some(number),
+            Signal::Name(name) => self.signals.get(name).copied(),
+        };
+        number.and_then(|number| u16::try_from(number).ok()).unwrap_or(u16::MAX)
     }
 
     /// A joint configuration or an item as a value.

@@ -119,7 +119,7 @@ impl<'p> Interpreter<'p, '_> {
         | Primitive::Sleep { span, .. }) = primitive;
         self.step()?;
         self.remember_state(*span);
-        let bit = u16::try_from(bit).unwrap_or(u16::MAX);
+        let bit = self.names.line(bit);
         let mut settle_s: Option<f64> = None;
         for duration in after.map_while(settling_time) {
             let time_s = self.value(duration)?.real();
@@ -190,11 +190,10 @@ impl<'p> Interpreter<'p, '_> {
     /// Wait for an input; what is to be done if it does not come.
     pub(super) fn wait_until(
         &mut self,
-        (input, high): (u64, bool),
+        (bit, high): (u16, bool),
         timeout: &Expression<'p>,
         otherwise: Option<&'p Block<'p>>,
     ) -> Run<Option<&'p Block<'p>>> {
-        let bit = u16::try_from(input).unwrap_or(u16::MAX);
         let longest_s = self.value(timeout)?.real();
         let looks = (longest_s / POLL_S).ceil();
         let mut looked = 0.0;

@@ -231,3 +231,26 @@ fn rule_9_the_source_map_is_in_order_and_in_the_text() {
         refused(text(map), Rule::SourceMap, None, &why);
     }
 }
+
+#[test]
+fn rule_9_mentions_are_of_what_is_there_and_in_the_text() {
+    let text = |mention: &str| {
+        module(&format!(
+            "obvasm 1\n.item i\n.tool t\n.function f start\nenter\nhalt\n.source s\n| \u{fc}move\n\
+             .mention output o 9 0 0 6\n.mention {mention}\n"
+        ))
+    };
+    accepted(text("item 0 0 0 6"));
+    accepted(text("tool 0 0 6 6"));
+    accepted(text("input \"\" 65535 0 2 3"));
+    for mention in [
+        "cell 0 0 0",
+        "item 1 0 0 0",
+        "tool 1 0 0 0",
+        "item 0 1 0 0",
+        "item 0 0 0 7",
+        "tool 0 0 0 1",
+    ] {
+        refused(text(mention), Rule::SourceMap, None, "mention 1 makes no sense");
+    }
+}
