@@ -1,8 +1,9 @@
 //! Source text to module: resolve, check units and types, lower to statements.
 //!
 //! [`compile`] is the way in. Read `types` and `units`, then `check` (syntax tree to checked tree),
-//! `effects` (errors and barriers across calls), `lower` (checked tree to code). Knows nothing of
-//! machines and robots; the parser is `obverse-syntax`.
+//! `effects` (errors and barriers across calls), `lower` (checked tree to code), `shortfall`
+//! (reversals that cannot be had). Knows nothing of machines and robots; the parser is
+//! `obverse-syntax`.
 
 mod check;
 mod effects;
@@ -13,6 +14,7 @@ mod recursion;
 mod report;
 mod response;
 mod reversal;
+mod shortfall;
 mod tree;
 mod types;
 mod units;
@@ -47,6 +49,9 @@ pub fn compile(source_name: &str, source: &str) -> Compiled {
             false => lower::lower(program, &effects, &mut reports),
         }
     });
+    if let Some(module) = &module {
+        shortfall::check(&parsed.program, module, &mut reports);
+    }
     let mut diagnostics = parsed.diagnostics;
     diagnostics.extend(reports.into_diagnostics());
     diagnostics.sort_by_key(|diagnostic| diagnostic.primary.span);

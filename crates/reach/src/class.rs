@@ -1,9 +1,10 @@
 //! What a row of instructions is as a whole: the class of a statement.
 
 use crate::facts::Facts;
+use crate::few::Few;
 use crate::graph::Graph;
 use crate::sets::Calls;
-use crate::{Reach, is_never};
+use crate::{Horizon, Reach, is_never};
 use obverse_bytecode::{Function, Module};
 use obverse_isa::{Class, Instr};
 use std::ops::Range;
@@ -36,23 +37,28 @@ impl Reach<'_> {
     /// it or in what it calls.
     #[must_use]
     pub fn standing(&self, range: Range<u32>) -> Standing {
-        if self.leaves_horizon(range.clone()) {
+        if !self.left_by(range.clone()).is_empty() {
             return Standing::Never;
         }
         let code = &self.module.code[range.start as usize..range.end as usize];
         code.iter().map(|instr| of_instr(instr, &self.standings)).max().unwrap_or(Standing::Always)
     }
 
-    /// Whether something stops going back from behind a row of instructions within it.
-    fn leaves_horizon(&self, range: Range<u32>) -> bool {
+    /// What a row of instructions may leave behind it that stops going back, within it or in what
+    /// it calls: the first few.
+    #[must_use]
+    pub fn left_by(&self, range: Range<u32>) -> Vec<Horizon> {
+        let mut left = Few::default();
         let mut pc = range.end;
         while pc > range.start {
             pc -= 1;
             let instr = &self.module.code[pc as usize];
             match *instr {
-                _ if is_never(instr) => return true,
-                Instr::Call { function, .. } if self.call_leaves_horizon(function.index()) => {
-                    return true;
+                _ if is_never(instr) => left.add(&Few::of(Horizon::Never(pc))),
+                Instr::Call { function, .. } => {
+                    for exit in self.exits(function.index()) {
+                        left.add(&self.within.at(exit));
+                    }
                 }
                 Instr::BlockSkip { from } | Instr::BlockReplace { from, .. }
                     if from.0 >= range.start =>
@@ -62,20 +68,7 @@ impl Reach<'_> {
                 _ => {}
             }
         }
-        false
-    }
-
-    /// Whether a call of a function may leave a horizon behind.
-    fn call_leaves_horizon(&self, function: usize) -> bool {
-        let exits = self.exits(function);
-        exits.into_iter().any(|exit| !self.within.at(exit).is_empty())
-    }
-
-    /// Whether every call of a function that returns leaves a horizon behind.
-    #[must_use]
-    pub fn always_stops(&self, function: usize) -> bool {
-        let exits: Vec<_> = self.exits(function);
-        !exits.is_empty() && exits.into_iter().all(|exit| !self.facts.at(exit).is_clear)
+        left.horizons().collect()
     }
 
     fn exits(&self, function: usize) -> Vec<u32> {

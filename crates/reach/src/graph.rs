@@ -206,9 +206,8 @@ impl Builder<'_> {
         let instr = self.module.code[pc as usize];
         let before = self.point(pass, pc - 1);
         if (self.stops)(&instr) {
-            return before.map(|before| {
-                self.unless_nowhere(pass, pc, before, Node::Horizon { before })
-            });
+            return before
+                .map(|before| self.unless_nowhere(pass, pc, before, Node::Horizon { before }));
         }
         match instr {
             Instr::Call { function, .. } => self.call(pass, pc, before, function.index()),

@@ -131,18 +131,7 @@ impl<'m> Reach<'m> {
     /// it has them.
     #[must_use]
     pub fn reason(&self, pc: u32) -> &'m str {
-        let Some(instr) = self.module.code.get(pc as usize) else { return "" };
-        let own = match *instr {
-            Instr::Barrier { reason } | Instr::Irreversible { reason } => {
-                self.module.reasons.get(reason.index())
-            }
-            _ => None,
-        };
-        match (own, instr.info().class) {
-            (Some(own), _) => own,
-            (None, Class::Never(why)) => why,
-            (None, _) => "",
-        }
+        reason(self.module, pc)
     }
 
     /// What is there before an instruction, in all contexts.
@@ -150,6 +139,24 @@ impl<'m> Reach<'m> {
         let contexts = self.graph.contexts_of(function);
         let nodes = contexts.flat_map(move |at| self.graph.before(self.module, at, pc));
         nodes.filter(|&node| node != NOWHERE)
+    }
+}
+
+/// Why an instruction of class never cannot be gone back over: in the program's own words where it
+/// has them. Empty for others.
+#[must_use]
+pub fn reason(module: &Module, pc: u32) -> &str {
+    let Some(instr) = module.code.get(pc as usize) else { return "" };
+    let own = match *instr {
+        Instr::Barrier { reason } | Instr::Irreversible { reason } => {
+            module.reasons.get(reason.index())
+        }
+        _ => None,
+    };
+    match (own, instr.info().class) {
+        (Some(own), _) => own,
+        (None, Class::Never(why)) => why,
+        (None, _) => "",
     }
 }
 

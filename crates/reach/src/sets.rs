@@ -3,11 +3,11 @@
 //! Both graphs are condensed first: what lies on one cycle has one set, and each set is the union
 //! of those that its component leads to.
 
+use crate::Horizon;
 use crate::condense::Components;
 use crate::facts::Facts;
 use crate::few::Few;
 use crate::graph::{Graph, NOWHERE, Node, NodeId};
-use crate::Horizon;
 
 /// The horizons within a context, by component of the graph.
 pub(crate) struct Within {
@@ -174,8 +174,7 @@ fn entries(graph: &Graph, facts: &Facts, within: &Within, is_entered: &[bool]) -
     let mut own = vec![Few::default(); graph.contexts.len()];
     let mut callers: Vec<Vec<u32>> = vec![Vec::new(); graph.contexts.len()];
     for entrance in &graph.entrances {
-        let (fact, owner) =
-            (facts.at(entrance.before), graph.owners[entrance.before as usize]);
+        let (fact, owner) = (facts.at(entrance.before), graph.owners[entrance.before as usize]);
         if fact.is_reached && is_entered[owner as usize] {
             own[entrance.callee as usize].add(&within.at(entrance.before));
             if fact.is_clear {
@@ -184,9 +183,8 @@ fn entries(graph: &Graph, facts: &Facts, within: &Within, is_entered: &[bool]) -
         }
     }
     own.first_mut().into_iter().for_each(|start| start.add(&Few::of(Horizon::Start)));
-    let components = Components::of(own.len(), |context, at| {
-        callers[context as usize].get(at).copied()
-    });
+    let components =
+        Components::of(own.len(), |context, at| callers[context as usize].get(at).copied());
     let mut sets: Vec<Few> = Vec::with_capacity(components.len());
     for members in components.iter() {
         let mut set = Few::default();
