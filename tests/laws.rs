@@ -95,7 +95,7 @@ fn reach_is_met() {
         met += some.len();
         said += all.len();
     }
-    assert!(met * 100 >= said * 50, "of {said} horizons that points may have, {met} were met");
+    assert!(met * 100 >= said * 75, "of {said} horizons that points may have, {met} were met");
 }
 
 #[test]
