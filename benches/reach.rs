@@ -23,7 +23,8 @@ fn sequences(instructions: u32) -> Verified {
         let before = if index % 50 == 0 { 0 } else { index - 1 };
         let _ = write!(
             text,
-            "sequence part_{index} {{\n  if input 1 {{ call part_{before} }} else {{ wait 1 s }}\n  \
+            "sequence part_{index} {{\n  \
+             if input 1 {{ call part_{before} }} else {{ wait 1 s }}\n  \
              for i from 1 to 3 {{ move 10 mm up in base if input 2 {{ break }} }}\n  \
              if input 3 {{ irreversible \"cut\" {{ wait 1 s }} }}\n}}\n"
         );

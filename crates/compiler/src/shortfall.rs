@@ -1,5 +1,5 @@
-//! Warnings where an error asks for a reversal that cannot be had: the place where it is raised, the
-//! clause that asks, what stops it, and the calls between.
+//! Warnings where an error asks for a reversal that cannot be had: the place where it is raised,
+//! the clause that asks, what stops it, and the calls between.
 //!
 //! What can be gone back over is the knowledge of `obverse-reach`, which reads the module; here it
 //! is brought back to the source.

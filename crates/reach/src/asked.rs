@@ -2,7 +2,8 @@
 //! back so far is raised at a place from which something stops going back before that.
 //!
 //! How far is counted as a recovery counts: actions of the sequence that raised the error, a call
-//! being one, and then of those that called it.
+//! being one, and then of those that called it. An action is taken back when its beginning is
+//! passed, so that a call is one also on the way out of what it has called.
 
 use crate::graph::NodeId;
 use crate::search::{Cost, Search, Way};
@@ -72,7 +73,7 @@ pub fn shortfalls(module: &Module) -> Vec<Shortfall> {
         let kind = match policy.extent {
             Extent::Actions(count) => asked.within_actions(&begin, count),
             Extent::Sequence => asked.within_sequence(&begin),
-            Extent::Checkpoint(checkpoint) => asked.to_checkpoint(&begin, checkpoint),
+            Extent::Checkpoint(checkpoint) => asked.before_checkpoint(&begin, checkpoint),
         };
         found.extend(kind.map(|kind| Shortfall { raise: pc, error: error.0, kind }));
         if found.len() >= MAX_TOLD {
@@ -170,20 +171,26 @@ impl<'m> Asked<'m> {
     }
 
     fn within_sequence(&mut self, points: &[u32]) -> Option<ShortfallKind> {
-        let reach = &self.reach;
-        let function_of = |node: NodeId| {
+        let (reach, facts) = (&self.reach, &self.reach.facts);
+        let is_move = |node: NodeId| {
             let owner = reach.graph.owners[node as usize];
-            reach.graph.contexts[owner as usize].function
+            self.is_move(reach.graph.contexts[owner as usize].function)
         };
+        let is_clear_before = |node: NodeId| {
+            let entrances = reach.graph.entrances_of(reach.graph.owners[node as usize]);
+            entrances.iter().any(|entrance| {
+                reach.is_entered(entrance.before) && facts.at(entrance.before).is_clear
+            })
+        };
+        let is_clear = |node| facts.at(node).is_clear && (!is_move(node) || is_clear_before(node));
         let may_stop = Self::entered(reach, points)
-            .any(|(_, node)| !reach.within.at(node).is_empty() || self.is_move(function_of(node)));
-        let is_certain =
-            !Self::entered(reach, points).any(|(_, node)| reach.facts.at(node).is_clear);
+            .any(|(_, node)| !reach.within.at(node).is_empty() || is_move(node));
+        let is_certain = !Self::entered(reach, points).any(|(_, node)| is_clear(node));
         let (way, _) = may_stop.then(|| self.nearest(points, u32::MAX, false)).flatten()?;
         Some(ShortfallKind::Stopped { way, after_actions: None, is_certain })
     }
 
-    fn to_checkpoint(&mut self, points: &[u32], checkpoint: u16) -> Option<ShortfallKind> {
+    fn before_checkpoint(&mut self, points: &[u32], checkpoint: u16) -> Option<ShortfallKind> {
         let module = self.module;
         let marks = |instr: &Instr| match *instr {
             Instr::Checkpoint { checkpoint: marked } => marked.0 == checkpoint,

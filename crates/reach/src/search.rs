@@ -137,10 +137,8 @@ impl<'s, 'm> Search<'s, 'm> {
     }
 
     fn add(&mut self, state: State, cost: u32, parent: Option<State>, link: Option<Link>) {
-        if let Cost::Actions(_, most) = self.cost {
-            if cost >= most {
-                return;
-            }
+        if matches!(self.cost, Cost::Actions(_, most) if cost >= most) {
+            return;
         }
         if self.steps.get(&state).is_none_or(|known| cost < known.cost) {
             self.steps.insert(state, Step { cost, parent, link });

@@ -495,11 +495,11 @@ codes! {
 
     // W04xx: warnings about reversal.
     ReversalStopped "W0401" "a recovery that cannot go back as far as it says"
-        why "An error that is recovered from by reversing is raised at a place from which something \
-             stops going back before that: a barrier, or an end of a block that is irreversible, \
-             here or in what was called on the way. The recovery goes back as far as that and no \
-             further. `obverse reach` draws how far each line can go back. Raise the error before \
-             what stops it, or go back less far."
+        why "An error that is recovered from by reversing is raised at a place from which \
+             something stops going back before that: a barrier, or an end of a block that is \
+             irreversible, here or in what was called on the way. The recovery goes back as far as \
+             that and no further. `obverse reach` draws how far each line can go back. Raise the \
+             error before what stops it, or go back less far."
         wrong "error jam { recover by reversing to start of sequence then return to action }\n\
                sequence glue { barrier \"the glue is on\" }\n\
                sequence main { call glue throw jam }"
@@ -516,8 +516,8 @@ codes! {
         right "error jam { recover by reversing to checkpoint ready then return to action }\n\
                sequence main { checkpoint ready if input 1 { wait 1 s } throw jam }"
     CheckpointOnNoWay "W0403" "a recovery to a checkpoint that is on no way"
-        why "An error that is recovered from by reversing to a checkpoint is raised where no run has \
-             passed that checkpoint: it comes later, or lies in a block that is passed over in \
+        why "An error that is recovered from by reversing to a checkpoint is raised where no run \
+             has passed that checkpoint: it comes later, or lies in a block that is passed over in \
              reverse. Put the checkpoint on the way to where the error is raised."
         wrong "error jam { recover by reversing to checkpoint ready then return to action }\n\
                sequence main { if input 1 { throw jam } checkpoint ready }"

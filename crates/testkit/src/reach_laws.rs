@@ -10,8 +10,9 @@ use obverse_reach::{Horizon, MAX_KEPT, Reach};
 use obverse_vm::{Direction, Limits, Machine, Stop};
 use std::collections::BTreeSet;
 
-/// The longest run, in instructions.
-const MAX_STEPS: u64 = 3_000;
+/// The longest run forward, in steps, and the longest part of the way back that is looked at.
+const MAX_STEPS: u16 = 600;
+const MAX_STEPS_BACK: u8 = 40;
 /// How many instructions going back is given in all: a program may be long in passing its blocks.
 const MAX_BACK: u64 = 1_000_000;
 
@@ -109,13 +110,13 @@ fn back(machine: &mut Machine<'_>, cell: &mut Ledger) -> Option<Horizon> {
 fn meet(program: &Verified, reach: &Reach<'_>, u: &mut Unstructured<'_>) -> Result<Option<Met>> {
     let mut cell = Ledger::new(u.arbitrary()?);
     let mut machine = machine(program, &cell);
-    for _ in 0..u.int_in_range(0..=MAX_STEPS.min(600))? {
+    for _ in 0..u.int_in_range(0..=MAX_STEPS)? {
         if !step(&mut machine, Direction::Forward, &mut cell) {
             break;
         }
     }
     let met = agree(reach, &machine, &cell);
-    for _ in 0..u.int_in_range(0..=40_u8)? {
+    for _ in 0..u.int_in_range(0..=MAX_STEPS_BACK)? {
         if !step(&mut machine, Direction::Reverse, &mut cell) {
             break;
         }
