@@ -57,6 +57,9 @@ impl Pens {
 /// How long the lines of horizons are, with their reasons.
 const ACROSS_COLUMNS: usize = 76;
 
+/// How wide the lists of lines are at the most.
+const LINES_COLUMNS: usize = 32;
+
 /// What is drawn beside a line.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Edge {
@@ -162,19 +165,18 @@ pub(super) fn table(page: &Page, pens: &Pens, what: &str) -> String {
         told,
         "\n{always} always reversible   {after_forward} once run forward   {never} never\n"
     );
-    let rows: Vec<(String, String)> =
-        (0..page.stretches.len()).map(|index| (letter(index), lines(page, index))).collect();
-    let letters = rows.iter().map(|(name, _)| name.len()).max().unwrap_or(0);
-    let columns = rows.iter().map(|(_, lines)| lines.len()).max().unwrap_or(0).max(what.len());
+    let rows: Vec<Vec<String>> = lines(page).iter().map(|lines| folded(lines)).collect();
+    let letters = rows.len().checked_sub(1).map_or(0, |last| letter(last).len());
+    let columns = rows.iter().flatten().map(String::len).max().unwrap_or(0).max(what.len());
     let _ = writeln!(told, "{:letters$}  {what:columns$}  go back to", "");
-    for ((name, lines), stretch) in rows.iter().zip(&page.stretches) {
-        let (first, more) = stretch
-            .ends
-            .split_first()
-            .map_or(("", &[][..]), |(first, more)| (first.as_str(), more));
-        let _ = writeln!(told, "{name:letters$}  {lines:columns$}  {first}");
-        for end in more {
-            let _ = writeln!(told, "{:letters$}  {:columns$}  or {end}", "", "");
+    for (at, (lines, stretch)) in rows.iter().zip(&page.stretches).enumerate() {
+        for row in 0..lines.len().max(stretch.ends.len()) {
+            let name = if row == 0 { letter(at) } else { String::new() };
+            let lines = lines.get(row).map_or("", String::as_str);
+            let or = if row == 0 { "" } else { "or " };
+            let end = stretch.ends.get(row).map_or(String::new(), |end| format!("{or}{end}"));
+            let line = format!("{name:letters$}  {lines:columns$}  {end}");
+            let _ = writeln!(told, "{}", line.trim_end());
         }
     }
     if page.rows.iter().filter_map(|row| row.statement.as_ref()).any(|one| one.stretch.is_none()) {
@@ -183,25 +185,45 @@ pub(super) fn table(page: &Page, pens: &Pens, what: &str) -> String {
     told
 }
 
-/// The lines of a stretch: `12-15, 20`. A line that does nothing does not part them.
-fn lines(page: &Page, stretch: usize) -> String {
-    let mut ranges: Vec<(u16, usize, usize)> = Vec::new();
-    let mut is_open = false;
-    for row in &page.rows {
-        is_open &= !row.is_after_gap;
-        let Some(statement) = &row.statement else { continue };
-        if statement.stretch != Some(stretch) {
-            is_open = false;
-        } else if let (true, Some((_, _, last))) = (is_open, ranges.last_mut()) {
-            *last = row.number;
-        } else {
-            ranges.push((row.file, row.number, row.number));
-            is_open = true;
+/// A list, broken where it is too wide.
+fn folded(list: &str) -> Vec<String> {
+    let mut folded: Vec<String> = Vec::new();
+    for item in list.split_inclusive(", ") {
+        match folded.last_mut() {
+            Some(last) if last.len() + item.trim_end().len() <= LINES_COLUMNS => *last += item,
+            _ => folded.push(item.to_owned()),
         }
     }
-    let range = |(_, first, last): &(u16, usize, usize)| match first == last {
-        true => first.to_string(),
-        false => format!("{first}-{last}"),
+    folded.iter_mut().for_each(|row| row.truncate(row.trim_end().len()));
+    folded
+}
+
+/// The lines of each stretch: `12-15, 20`. A line that does nothing does not part them.
+fn lines(page: &Page) -> Vec<String> {
+    let mut lines = vec![String::new(); page.stretches.len()];
+    // The stretch of the rows before, with the first and the last of their lines.
+    let mut open: Option<(usize, usize, usize)> = None;
+    let mut close = |open: Option<(usize, usize, usize)>| {
+        let Some((stretch, first, last)) = open else { return };
+        let separator = if lines[stretch].is_empty() { "" } else { ", " };
+        let _ = match first == last {
+            true => write!(lines[stretch], "{separator}{first}"),
+            false => write!(lines[stretch], "{separator}{first}-{last}"),
+        };
     };
-    ranges.iter().map(range).collect::<Vec<_>>().join(", ")
+    for row in &page.rows {
+        if row.is_after_gap {
+            close(open.take());
+        }
+        let Some(statement) = &row.statement else { continue };
+        open = match (open, statement.stretch) {
+            (Some((of, first, _)), Some(stretch)) if of == stretch => Some((of, first, row.number)),
+            (before, stretch) => {
+                close(before);
+                stretch.map(|stretch| (stretch, row.number, row.number))
+            }
+        };
+    }
+    close(open);
+    lines
 }

@@ -37,7 +37,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result {
     let view = View { arguments, page: Page::of(module, &reach, &words), reach, words };
     match (arguments.json, arguments.at) {
         (true, _) => view.as_json()?,
-        (false, Some(line)) => view.explain(line)?,
+        (false, Some(_)) => view.explain()?,
         (false, None) => view.draw(),
     }
     Ok(Outcome::Done)
@@ -76,7 +76,7 @@ impl View<'_> {
     }
 
     /// Where one line can go back to, and how.
-    fn explain(&self, _: usize) -> std::result::Result<(), Problem> {
+    fn explain(&self) -> std::result::Result<(), Problem> {
         for (_, statement) in self.chosen()? {
             let function = self.words.function(statement.function);
             let place = self.words.statement(statement.point);

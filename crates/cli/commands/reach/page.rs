@@ -5,7 +5,10 @@ use super::words::Words;
 use obverse_bytecode::{Module, text};
 use obverse_isa::{Family, Instr};
 use obverse_reach::{Horizon, Reach, Standing, Verdict};
-use std::collections::{BTreeMap, HashMap, HashSet};
+use std::collections::{BTreeMap, HashMap};
+
+/// How far below its last statement the brace of a block is looked for.
+const MAX_LINES_TO_BRACE: usize = 100;
 
 /// All lines that hold code, and the stretches that they make up.
 pub(super) struct Page {
@@ -114,32 +117,24 @@ impl Stretches<'_, '_> {
 struct Sheet<'m, 'w> {
     words: &'w Words<'m>,
     statements: BTreeMap<(u16, usize), Statement>,
-    /// From the name of a function to its end.
-    shown: HashSet<(u16, usize)>,
+    /// The file, and the first and the last line, of each function.
+    shown: Vec<(u16, usize, usize)>,
     /// By line: what may be left behind it that stops going back, and the last instruction.
     left: HashMap<(u16, usize), (Vec<Horizon>, u32)>,
 }
 
 impl<'m, 'w> Sheet<'m, 'w> {
     fn of(module: &'m Module, reach: &Reach<'m>, words: &'w Words<'m>) -> Self {
-        let (statements, shown, left) = (BTreeMap::new(), HashSet::new(), HashMap::new());
+        let (statements, shown, left) = (BTreeMap::new(), Vec::new(), HashMap::new());
         let mut sheet = Self { words, statements, shown, left };
-        for (index, function) in module.functions.iter().enumerate().skip(1) {
-            sheet.show(index, function.first..function.end);
+        // The start is written nowhere.
+        for function in module.functions.iter().skip(1) {
+            sheet.shown.extend(words.lines_of(function));
         }
         for (index, _) in module.source_map.iter().enumerate() {
             sheet.entry(module, reach, index);
         }
         sheet
-    }
-
-    fn show(&mut self, function: usize, range: std::ops::Range<u32>) {
-        let (first, last) = (self.words.place(range.start), self.words.place(range.end - 1));
-        let (Some((file, first)), Some((other, last))) = (first, last) else { return };
-        debug_assert!(function > 0, "the start is written nowhere");
-        if file == other {
-            self.shown.extend((first..=last).map(|line| (file, line)));
-        }
     }
 
     fn entry(&mut self, module: &Module, reach: &Reach<'_>, index: usize) {
@@ -186,14 +181,20 @@ impl<'m, 'w> Sheet<'m, 'w> {
             let text = self.words.line(file, line).unwrap_or("");
             text.trim_start().starts_with('}') && indent(line) == indent(header)
         };
-        let is_shown = |line: &usize| self.shown.contains(&(file, *line));
-        let brace = (last..).take_while(is_shown).find(is_brace);
+        let brace = (last..last + MAX_LINES_TO_BRACE).find(is_brace);
         (file, brace.unwrap_or(last))
     }
 
     fn rows(mut self, stretches: &mut Stretches<'_, '_>) -> Vec<Row> {
-        let mut places: Vec<(u16, usize)> = self.shown.iter().copied().collect();
-        places.sort_unstable();
+        self.shown.sort_unstable();
+        let mut next = (0, 0);
+        let mut places = Vec::new();
+        for &(file, first, last) in &self.shown {
+            // One function may stand within another, as a block that is run in reverse does.
+            let first = if next.0 == file { first.max(next.1) } else { first };
+            places.extend((first..=last).map(|line| (file, line)));
+            next = (file, first.max(last + 1));
+        }
         let mut rows: Vec<Row> = Vec::with_capacity(places.len());
         for (file, number) in places {
             let text = self.words.line(file, number).unwrap_or("").to_owned();

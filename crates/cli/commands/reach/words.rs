@@ -1,6 +1,6 @@
 //! How instructions and horizons are called: by their source lines, or by their numbers.
 
-use obverse_bytecode::{FunctionKind, Module, SourceEntry};
+use obverse_bytecode::{Function, FunctionKind, Module, SourceEntry};
 use obverse_isa::Instr;
 use obverse_reach::{Horizon, Link, Reach, Verdict, Way};
 use std::collections::HashSet;
@@ -40,6 +40,13 @@ impl<'m> Words<'m> {
         let entry = self.module.source_at(pc)?;
         let lines = self.lines.get(usize::from(entry.file))?;
         Some((entry.file, lines.partition_point(|&begin| begin <= entry.start as usize)))
+    }
+
+    /// The file of a function, and its first and last line.
+    pub(super) fn lines_of(&self, function: &Function) -> Option<(u16, usize, usize)> {
+        let ((file, first), (other, last)) =
+            (self.place(function.first)?, self.place(function.end - 1)?);
+        (file == other).then_some((file, first, last))
     }
 
     /// The text of a source line.
