@@ -75,7 +75,7 @@ laws! {
 
 #[test]
 fn reach_of_modules() {
-    holds_of(REACH_RUNS, "reach_of_modules", reach_laws::reach_of_modules, 20);
+    holds_of(REACH_RUNS, "reach_of_modules", reach_laws::reach_of_modules, 8);
 }
 
 #[test]
