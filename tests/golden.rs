@@ -8,6 +8,7 @@
 //!                    on a line those of the line above; asserted, never written
 //! compile/NAME.obv   its disassembly but for the source text: NAME.obvasm
 //! run/NAME.obv       what `obverse run` tells: NAME.txt, and what `obverse back`: back/NAME.txt
+//! reach/NAME.obv     what `obverse reach` draws of it: NAME.txt; likewise of NAME.obvasm
 //! asm/NAME.obvasm    what is wrong with assembly text, or with the module that it says: NAME.txt
 //! ```
 //!
@@ -55,7 +56,7 @@ fn walk() -> (Vec<Golden>, BTreeSet<String>) {
         goldens.push(Golden { source: source.to_owned(), render, kept });
     };
     let mut strays = BTreeSet::new();
-    for folder in ["diag", "compile", "run", "back", "asm"] {
+    for folder in ["diag", "compile", "run", "back", "reach", "asm"] {
         for name in names_in(folder) {
             let file = format!("{folder}/{name}");
             match (folder, name.rsplit_once('.')) {
@@ -66,6 +67,9 @@ fn walk() -> (Vec<Golden>, BTreeSet<String>) {
                 ("run", Some((stem, "obv"))) => {
                     add(&file, run, format!("run/{stem}.txt"));
                     add(&file, back, format!("back/{stem}.txt"));
+                }
+                ("reach", Some((stem, "obv" | "obvasm"))) => {
+                    add(&file, reach, format!("reach/{stem}.txt"));
                 }
                 ("asm", Some((stem, "obvasm"))) => add(&file, refused, format!("asm/{stem}.txt")),
                 // Workcells.
@@ -153,6 +157,10 @@ fn run(file: &str) -> Result<String, Failed> {
 
 fn back(file: &str) -> Result<String, Failed> {
     printed(&["back", "--seed", "1", file])
+}
+
+fn reach(file: &str) -> Result<String, Failed> {
+    printed(&["reach", file])
 }
 
 fn listed(errors: &[impl ToString]) -> String {

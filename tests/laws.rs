@@ -1,14 +1,18 @@
 //! The laws of the machine over generated modules: there and back, runs are steps, parsimony, write
-//! ahead, barrier, blocks, turns, round trips; and those of compiler and machine together over
-//! generated programs, against the reference interpreter. `LAW_RUNS` sets how many programs each
-//! law sees; a failure prints the number of the program, and `LAW_SEED` runs that one alone.
+//! ahead, barrier, blocks, turns, round trips; those of compiler and machine together over
+//! generated programs, against the reference interpreter; and that of reach, over both. `LAW_RUNS`
+//! sets how many programs each law sees; a failure prints the number of the program, and `LAW_SEED`
+//! runs that one alone.
 
 use arbitrary::{Result, Unstructured};
-use obverse_testkit::{files, laws, machine_laws};
+use obverse_testkit::{files, laws, machine_laws, reach_laws};
 use std::collections::BTreeSet;
 
 /// How many modules each law sees.
 const RUNS: u64 = 4_000;
+
+/// How many modules and how many programs the laws of reach see.
+const REACH_RUNS: u64 = 10_000;
 
 /// Random bytes that follow from a number.
 fn bytes(seed: u64) -> Vec<u8> {
@@ -25,9 +29,14 @@ fn bytes(seed: u64) -> Vec<u8> {
 
 /// The law holds of every program, and of at least so many of a hundred it says something.
 fn holds(name: &str, law: fn(&mut Unstructured<'_>) -> Result<bool>, least: u64) {
+    holds_of(RUNS, name, law, least);
+}
+
+/// The same for so many programs.
+fn holds_of(runs: u64, name: &str, law: fn(&mut Unstructured<'_>) -> Result<bool>, least: u64) {
     let number = |variable: &str| std::env::var(variable).ok().and_then(|text| text.parse().ok());
     let alone: Option<u64> = number("LAW_SEED");
-    let runs = number("LAW_RUNS").unwrap_or(RUNS);
+    let runs = number("LAW_RUNS").unwrap_or(runs);
     let mut compared = 0;
     for seed in alone.map_or(0..runs, |seed| seed..seed + 1) {
         let held = std::panic::catch_unwind(|| law(&mut Unstructured::new(&bytes(seed))));
@@ -63,6 +72,32 @@ laws! {
         round_trips >= 100;
     laws: compiles >= 100 agrees_forward >= 95 agrees_backward >= 75;
     files: files_are_one_program >= 60;
+}
+
+#[test]
+fn reach_of_modules() {
+    holds_of(REACH_RUNS, "reach_of_modules", reach_laws::reach_of_modules, 8);
+}
+
+#[test]
+fn reach_of_programs() {
+    holds_of(REACH_RUNS, "reach_of_programs", reach_laws::reach_of_programs, 90);
+}
+
+/// What is said of points is met, by and by: the verdict is no larger than it needs to be, but for
+/// conditions that are never true.
+#[test]
+fn reach_is_met() {
+    let (mut met, mut said) = (0, 0);
+    for seed in 0..200 {
+        let Ok((some, all)) = reach_laws::met_and_said(&mut Unstructured::new(&bytes(seed))) else {
+            continue;
+        };
+        assert!(some.is_subset(&all), "LAW_SEED={seed}");
+        met += some.len();
+        said += all.len();
+    }
+    assert!(met * 100 >= said * 75, "of {said} horizons that points may have, {met} were met");
 }
 
 #[test]

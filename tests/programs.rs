@@ -48,6 +48,7 @@ const PROGRAMS: &[Expected] = &[
     Expected { file: "marking.obv", ends_with_error: &[], back: Back::StopsAt(46) },
     identical("peg_in_hole.obv"),
     Expected { file: "reversal_policy.obv", ends_with_error: &[0], back: Back::Identical },
+    Expected { file: "press_fit.obv", ends_with_error: &[], back: Back::StopsAt(76) },
     identical("screws.obv"),
     identical("sheets.obv"),
     identical("sorting.obv"),
@@ -173,6 +174,8 @@ fn the_language_is_shown() {
         ("peg_in_hole.obv", "repeat with perturbation"),
         ("reversal_policy.obv", "recover by reversing"),
         ("reversal_policy.obv", "checkpoint"),
+        ("press_fit.obv", "irreversible \""),
+        ("press_fit.obv", "reversing up to checkpoint"),
         ("tower.obv", "keyframe"),
         ("handover.obv", "import \"handover/"),
         ("handover.obv", "set lamp high"),
@@ -199,6 +202,7 @@ struct Trip {
     cell: Cell,
     before: Vec<Pose>,
     after: Vec<Pose>,
+    back: Ending,
     again: Vec<Pose>,
 }
 
@@ -215,9 +219,8 @@ impl Trip {
         assert_eq!(there, Ending::Finished, "{file}");
         let after = poses(&cell, &sim);
         let back = drive(&mut machine, Direction::Reverse, Limits::NONE, &mut sim, &mut ());
-        assert_eq!(back, Ending::AtStart, "{file}");
         let again = poses(&cell, &sim);
-        Self { cell, before, after, again }
+        Self { cell, before, after, back, again }
     }
 
     /// Where an item is after the run forward, in whole millimetres.
@@ -243,6 +246,7 @@ fn poses(cell: &Cell, sim: &Sim) -> Vec<Pose> {
 fn items_are_put_back_to_where_they_were() {
     for row in PROGRAMS.iter().filter(|row| matches!(row.back, Back::Identical)) {
         let trip = Trip::of(row.file, 1);
+        assert_eq!(trip.back, Ending::AtStart, "{}", row.file);
         assert_eq!(trip.before, trip.again, "{}", row.file);
     }
 }
@@ -278,6 +282,23 @@ fn the_thick_pin_is_in_the_box_and_the_next_one_in_the_socket() {
     assert_eq!((x, y), (450, -150));
     assert!((58..=62).contains(&z), "{z}");
     assert_eq!(trip.before[2], trip.after[2], "the third pin stays in the rack");
+}
+
+/// Where a run stops going back is where its reach says that it does, and on the way there the pin
+/// is back in the rack, and the bushing is not.
+#[test]
+fn the_pin_comes_out_again_and_the_bushing_does_not() {
+    let trip = Trip::of("press_fit.obv", 1);
+    assert!(matches!(trip.back, Ending::Refused(_)), "{:?}", trip.back);
+    assert_eq!(trip.before[1], trip.again[1], "the pin");
+    assert_ne!(trip.before[1], trip.after[1]);
+    assert_eq!(trip.after[0], trip.again[0], "the bushing");
+    assert_ne!(trip.before[0], trip.again[0]);
+    let summary = summary("reach", "press_fit.obv", &[]);
+    let [.., last] = &summary["stretches"].as_array().expect("stretches")[..] else {
+        panic!("{summary}")
+    };
+    assert_eq!(last["stops"][0]["line"], 76, "{summary}");
 }
 
 /// A production loop with a barrier in it: a hundred times the rounds, the same tape.

@@ -44,6 +44,8 @@ enum Command {
     Run(commands::run::Arguments),
     /// Run a program, then take it back as far as it goes.
     Back(commands::back::Arguments),
+    /// Show how far back each line of a program can go, and what stops it.
+    Reach(commands::reach::Arguments),
     /// Show the instructions of a program, with the class of each.
     Dis(commands::dis::Arguments),
     /// Show what is on a recorded tape.
@@ -61,6 +63,7 @@ impl Command {
             Self::Build(arguments) => arguments.json,
             Self::Run(arguments) | Self::Back(arguments) => arguments.json,
             Self::Dis(arguments) => arguments.json,
+            Self::Reach(arguments) => arguments.json,
             Self::Tape(arguments) => arguments.json,
             Self::Check(_) | Self::Isa(_) | Self::Explain(_) => false,
         }
@@ -86,6 +89,7 @@ fn main() -> ExitCode {
         Command::Build(arguments) => commands::build::run(&arguments),
         Command::Run(arguments) => commands::run::run(&arguments),
         Command::Back(arguments) => commands::back::run(&arguments),
+        Command::Reach(arguments) => commands::reach::run(&arguments),
         Command::Dis(arguments) => commands::dis::run(&arguments),
         Command::Tape(arguments) => commands::tape::run(&arguments),
         Command::Isa(arguments) => commands::isa::run(&arguments),

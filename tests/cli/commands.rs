@@ -21,7 +21,7 @@ fn has_line(story: &str, words: &[&str]) -> bool {
 #[test]
 fn the_help_lists_the_commands_and_the_exit_codes() {
     let help = Bench::new("help").ends(0, &["--help"]).stdout;
-    for command in ["check", "build", "run", "back", "dis", "tape", "isa", "explain"] {
+    for command in ["check", "build", "run", "back", "dis", "reach", "tape", "isa", "explain"] {
         assert!(help.contains(&format!("\n  {command} ")), "{command} in\n{help}");
     }
     let codes: Vec<&str> = help.lines().skip_while(|line| *line != "Exit codes:").collect();
@@ -208,6 +208,61 @@ fn exit_code_one_is_for_runs_that_end_otherwise() {
     assert_eq!((&fault["outcome"], &fault["stopped_at"]["line"]), (&json!("fault"), &json!(2)));
     // What ended with an error goes back all the same, and that is what `back` is asked for.
     bench.ends(0, &["back", "reversal_policy.obv", "--seed", "0"]);
+}
+
+#[test]
+fn reach_is_told_of_sources_modules_and_assembly() {
+    let bench = Bench::new("reach");
+    bench.ends(0, &["build", "glue.obv"]);
+    let drawn = bench.ends(0, &["reach", "glue.obv"]).stdout;
+    assert_eq!(bench.ends(0, &["reach", "glue.obc"]).stdout, drawn);
+    assert!(drawn.contains("━━━ the glue is on the block ━━━"), "{drawn}");
+    let ascii = bench.ends(0, &["reach", "--ascii", "glue.obv"]).stdout;
+    assert!(ascii.is_ascii() && ascii.lines().count() == drawn.lines().count(), "{ascii}");
+    // Without a map to the source, instructions are told of.
+    let text = bench.ends(0, &["dis", "glue.obv"]).stdout;
+    let bare: Vec<&str> = text.lines().filter(|line| !line.trim().starts_with('@')).collect();
+    bench.write("bare.obvasm", bare.join("\n"));
+    let listed = bench.ends(0, &["reach", "bare.obvasm"]).stdout;
+    assert!(listed.contains("just after instruction"), "{listed}");
+}
+
+#[test]
+fn reach_says_of_each_statement_what_stops_it() {
+    let bench = Bench::new("reach_json");
+    let ran = bench.ends(0, &["reach", "--json", "glue.obv"]);
+    let lines = ran.json();
+    assert_eq!(ran.summary()["statements"], lines.len() - 1);
+    let of = |line: u64| {
+        let found = lines.iter().find(|one| one["line"] == line);
+        found.unwrap_or_else(|| panic!("line {line} is told of"))
+    };
+    assert_eq!((&of(20)["class"], &of(20)["action"]), (&json!("after-forward"), &json!(true)));
+    assert_eq!(of(20)["stops"], json!([{ "at": "start" }]));
+    assert_eq!((&of(21)["class"], &of(36)["class"]), (&json!("never"), &json!("always")));
+    let stop = &of(46)["stops"][0];
+    assert_eq!((&stop["at"], &stop["line"]), (&json!("never"), &json!(21)));
+    assert_eq!(stop["reason"], "the glue is on the block");
+    assert_eq!((&of(46)["reached"], &of(46)["more"]), (&json!(true), &json!(false)));
+}
+
+#[test]
+fn reach_explains_one_line() {
+    let bench = Bench::new("reach_at");
+    let told = bench.ends(0, &["reach", "glue.obv", "--at", "46"]).stdout;
+    assert_eq!(
+        told,
+        "line 46 `call look`, in sequence main: after-forward\n\n\
+         goes back to just after line 21: the glue is on the block\n  \
+         back into sequence draw_bead, by line 45 `call draw_bead`\n  \
+         to line 21 `irreversible \"the glue is on the block\"`, which is not taken back\n"
+    );
+    let one = bench.ends(0, &["reach", "glue.obv", "--json", "--at", "46"]);
+    assert_eq!(one.summary()["statements"], 1);
+    let way = one.json()[0]["stops"][0]["way"].clone();
+    assert_eq!(way.as_array().map(Vec::len), Some(2), "{way}");
+    let nothing = bench.ends(2, &["reach", "glue.obv", "--at", "1"]);
+    assert!(nothing.stderr.contains("line 1 does nothing"), "{}", nothing.stderr);
 }
 
 #[test]

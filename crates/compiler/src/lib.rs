@@ -2,8 +2,9 @@
 //!
 //! [`compile`] is the way in, and [`compile_files`] for a program of several files, which `load`
 //! gathers and `merge` makes one tree of. Read `types` and `units`, then `check` (syntax tree to
-//! checked tree), `effects` (errors and barriers across calls), `lower` (checked tree to code).
-//! Knows nothing of machines and robots; the parser is `obverse-syntax`.
+//! checked tree), `effects` (errors and barriers across calls), `lower` (checked tree to code),
+//! `shortfall` (reversals that cannot be had). Knows nothing of machines and robots; the parser is
+//! `obverse-syntax`.
 
 mod check;
 mod effects;
@@ -17,6 +18,7 @@ mod recursion;
 mod report;
 mod response;
 mod reversal;
+mod shortfall;
 mod tree;
 mod types;
 mod units;
@@ -72,6 +74,9 @@ fn compile_loaded(loaded: &Loaded) -> (Option<Module>, Vec<Diagnostic>) {
             false => lower::lower(program, sources, &effects, &mut reports),
         }
     });
+    if let Some(module) = &module {
+        shortfall::check(sources, &parsed.program, module, &mut reports);
+    }
     let mut diagnostics = parsed.diagnostics;
     diagnostics.extend(reports.into_diagnostics());
     diagnostics.sort_by_key(|diagnostic| diagnostic.primary.span);

@@ -2,8 +2,8 @@
 //!
 //! A code is stable: a row may be reworded, but its code is never given another meaning nor used
 //! again. `E00xx` is text and grammar, `E01xx` names, `E02xx` types and units, `E03xx` statements,
-//! structure and errors, `E04xx` reversal, `E05xx` files, `W0xxx` warnings. It knows
-//! nothing of how a mistake is found or shown.
+//! structure and errors, `E04xx` reversal, `E05xx` files; `W00xx` warnings, `W04xx` those about
+//! reversal, `W05xx` those about files. It knows nothing of how a mistake is found or shown.
 
 macro_rules! codes {
     ($($name:ident $code:literal $title:literal
@@ -533,4 +533,35 @@ codes! {
         right "output gripper = 0\n\
                output lamp = 1\n\
                sequence main { set gripper high set lamp high }"
+
+    // W04xx: warnings about reversal.
+    ReversalStopped "W0401" "a recovery that cannot go back as far as it says"
+        why "An error that is recovered from by reversing is raised at a place from which \
+             something stops going back before that: a barrier, or an end of a block that is \
+             irreversible, here or in what was called on the way. The recovery goes back as far as \
+             that and no further. `obverse reach` draws how far each line can go back. Raise the \
+             error before what stops it, or go back less far."
+        wrong "error jam { recover by reversing to start of sequence then return to action }\n\
+               sequence glue { barrier \"the glue is on\" }\n\
+               sequence main { call glue throw jam }"
+        right "error jam { recover by reversing to start of sequence then return to action }\n\
+               sequence glue { barrier \"the glue is on\" }\n\
+               sequence work { wait 1 s throw jam }\n\
+               sequence main { call glue call work }"
+    CheckpointNotOnEveryWay "W0402" "a recovery to a checkpoint that is not on every way"
+        why "An error that is recovered from by reversing to a checkpoint can be raised on a way \
+             that does not pass that checkpoint: then there is nothing to go back to but the start \
+             of the program. Put the checkpoint where all ways pass it."
+        wrong "error jam { recover by reversing to checkpoint ready then return to action }\n\
+               sequence main { if input 1 { checkpoint ready } throw jam }"
+        right "error jam { recover by reversing to checkpoint ready then return to action }\n\
+               sequence main { checkpoint ready if input 1 { wait 1 s } throw jam }"
+    CheckpointOnNoWay "W0403" "a recovery to a checkpoint that is on no way"
+        why "An error that is recovered from by reversing to a checkpoint is raised where no run \
+             has passed that checkpoint: it comes later, or lies in a block that is passed over in \
+             reverse. Put the checkpoint on the way to where the error is raised."
+        wrong "error jam { recover by reversing to checkpoint ready then return to action }\n\
+               sequence main { if input 1 { throw jam } checkpoint ready }"
+        right "error jam { recover by reversing to checkpoint ready then return to action }\n\
+               sequence main { checkpoint ready if input 1 { throw jam } }"
 }

@@ -12,6 +12,7 @@ pub mod ledger;
 pub mod logged;
 pub mod machine_laws;
 pub mod programs;
+pub mod reach_laws;
 pub mod reference;
 
 pub use ledger::Ledger;

@@ -14,4 +14,5 @@ mod limits;
 mod module;
 mod reversal;
 mod reversal_mistakes;
+mod shortfalls;
 mod statements;

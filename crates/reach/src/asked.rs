@@ -1,0 +1,222 @@
+//! Where a program asks for a reversal that cannot be had: an error that is recovered from by going
+//! back so far is raised at a place from which something stops going back before that.
+//!
+//! How far is counted as a recovery counts: actions of the sequence that raised the error, a call
+//! being one, and then of those that called it. An action is taken back when its beginning is
+//! passed, so that a call is one also on the way out of what it has called.
+
+use crate::graph::NodeId;
+use crate::search::{Cost, Search, Way};
+use crate::{Horizon, Reach, is_never};
+use obverse_bytecode::{Extent, FunctionKind, Module, Recovery, Respond};
+use obverse_isa::Instr;
+use std::collections::HashMap;
+
+/// The most shortfalls that are told of a module.
+const MAX_TOLD: usize = 200;
+/// How much is searched for them in all, so that it takes no longer than the program is long.
+const MAX_SEARCHED: usize = 2_000_000;
+
+/// A reversal that is asked for and cannot be had, or not always.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Shortfall {
+    /// The instruction that raises the error.
+    pub raise: u32,
+    /// The error, as an index.
+    pub error: u16,
+    /// What is in the way.
+    pub kind: ShortfallKind,
+}
+
+/// Why a reversal cannot be had.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum ShortfallKind {
+    /// Something stops it.
+    Stopped {
+        /// What, and how going back comes there.
+        way: Way,
+        /// How many actions lie between, if actions were asked for.
+        after_actions: Option<u32>,
+        /// Whether that is so on every way there.
+        is_certain: bool,
+    },
+    /// There is a way there that does not pass the checkpoint.
+    NotOnEveryWay,
+    /// No way there passes the checkpoint.
+    OnNoWay,
+}
+
+/// Every reversal that a module asks for and cannot have, by instruction; at most a few hundred.
+#[must_use]
+pub fn shortfalls(module: &Module) -> Vec<Shortfall> {
+    let reverses = |error: &obverse_bytecode::ErrorDeclaration| {
+        matches!(error.recovery, Recovery::Reversing(_))
+    };
+    if !module.errors.iter().any(reverses) {
+        return Vec::new();
+    }
+    let reach = Reach::of(module);
+    let mut asked = Asked {
+        module,
+        callers: reach.calls.reversed(),
+        reach,
+        begun: actions_begun(module),
+        checkpoints: HashMap::new(),
+        budget: MAX_SEARCHED,
+    };
+    let mut found = Vec::new();
+    for (pc, instr) in (0_u32..).zip(&module.code) {
+        let Instr::ErrorRaise { error } = *instr else { continue };
+        let declared = &module.errors[error.index()];
+        let Recovery::Reversing(policy) = &declared.recovery else { continue };
+        let begin = asked.begin(pc, declared.respond);
+        let kind = match policy.extent {
+            Extent::Actions(count) => asked.within_actions(&begin, count),
+            Extent::Sequence => asked.within_sequence(&begin),
+            Extent::Checkpoint(checkpoint) => asked.before_checkpoint(&begin, checkpoint),
+        };
+        found.extend(kind.map(|kind| Shortfall { raise: pc, error: error.0, kind }));
+        if found.len() >= MAX_TOLD {
+            break;
+        }
+    }
+    found
+}
+
+/// How many actions begin up to each instruction.
+fn actions_begun(module: &Module) -> Vec<u32> {
+    let mut begun = vec![0; module.code.len()];
+    for entry in module.source_map.iter().filter(|entry| entry.action.is_some()) {
+        begun[entry.first as usize] = 1;
+    }
+    let mut all = 0;
+    for count in &mut begun {
+        all += *count;
+        *count = all;
+    }
+    begun
+}
+
+struct Asked<'m> {
+    module: &'m Module,
+    reach: Reach<'m>,
+    begun: Vec<u32>,
+    /// The callers of each function.
+    callers: Vec<Vec<u32>>,
+    /// By checkpoint: the module with that as a horizon, too.
+    checkpoints: HashMap<u16, Reach<'m>>,
+    budget: usize,
+}
+
+impl<'m> Asked<'m> {
+    /// Where going back begins for an error that is raised here: before these instructions.
+    fn begin(&self, raise: u32, respond: Respond) -> Vec<u32> {
+        let function = self.module.function_at(raise).unwrap_or(0);
+        let end = |function: usize| self.module.functions[function].end - 1;
+        match (respond, self.is_move(function)) {
+            (Respond::AfterSequence, true) => {
+                let callers = self.callers[function].iter();
+                callers.map(|&caller| end(caller as usize)).collect()
+            }
+            (Respond::AfterSequence, false) | (Respond::AfterAction, true) => vec![end(function)],
+            (Respond::AtOnce, _) | (Respond::AfterAction, false) => vec![raise + 1],
+        }
+    }
+
+    /// What is there before instructions, in all contexts that are entered.
+    fn entered<'a>(
+        reach: &'a Reach<'m>,
+        points: &'a [u32],
+    ) -> impl Iterator<Item = (u32, NodeId)> + 'a {
+        points.iter().flat_map(move |&pc| {
+            let function = reach.module.function_at(pc).unwrap_or(0);
+            let nodes = reach.nodes_before(function, pc);
+            nodes.filter(|&node| reach.is_entered(node)).map(move |node| (pc, node))
+        })
+    }
+
+    /// Whether a function is part of the sequence that calls it.
+    fn is_move(&self, function: usize) -> bool {
+        self.module.functions[function].kind == FunctionKind::AdvancedMove
+    }
+
+    /// The nearest horizon but the start, as far as a search goes, and after how many actions.
+    fn nearest(&mut self, points: &[u32], most: u32, goes_on: bool) -> Option<(Way, u32)> {
+        let module = self.module;
+        let leaves = move |function: usize| {
+            goes_on || module.functions[function].kind == FunctionKind::AdvancedMove
+        };
+        let cost = Cost::Actions(&self.begun, most);
+        let mut search = Search::new(&self.reach, cost, Box::new(leaves));
+        search.budget = self.budget;
+        for (pc, node) in Self::entered(&self.reach, points) {
+            let before = self.begun[self.reach.graph.pcs[node as usize] as usize];
+            search.begin(node, self.begun[pc as usize - 1].saturating_sub(before));
+        }
+        let mut nearest = None;
+        search.run(&mut |search, horizon| {
+            if matches!(horizon, Horizon::Never(_)) {
+                nearest = Some((search.way(horizon), search.cost()));
+            }
+            nearest.is_none()
+        });
+        self.budget = search.budget;
+        nearest
+    }
+
+    fn within_actions(&mut self, points: &[u32], count: u32) -> Option<ShortfallKind> {
+        let (way, after) = self.nearest(points, count, true)?;
+        let after_actions = Some(after);
+        Some(ShortfallKind::Stopped { way, after_actions, is_certain: false })
+    }
+
+    fn within_sequence(&mut self, points: &[u32]) -> Option<ShortfallKind> {
+        let (reach, facts) = (&self.reach, &self.reach.facts);
+        let is_move = |node: NodeId| {
+            let owner = reach.graph.owners[node as usize];
+            self.is_move(reach.graph.contexts[owner as usize].function)
+        };
+        let is_clear_before = |node: NodeId| {
+            let entrances = reach.graph.entrances_of(reach.graph.owners[node as usize]);
+            entrances.iter().any(|entrance| {
+                reach.is_entered(entrance.before) && facts.at(entrance.before).is_clear
+            })
+        };
+        let is_clear = |node| facts.at(node).is_clear && (!is_move(node) || is_clear_before(node));
+        let may_stop = Self::entered(reach, points)
+            .any(|(_, node)| !reach.within.at(node).is_empty() || is_move(node));
+        let is_certain = !Self::entered(reach, points).any(|(_, node)| is_clear(node));
+        let (way, _) = may_stop.then(|| self.nearest(points, u32::MAX, false)).flatten()?;
+        Some(ShortfallKind::Stopped { way, after_actions: None, is_certain })
+    }
+
+    fn before_checkpoint(&mut self, points: &[u32], checkpoint: u16) -> Option<ShortfallKind> {
+        let module = self.module;
+        let marks = |instr: &Instr| match *instr {
+            Instr::Checkpoint { checkpoint: marked } => marked.0 == checkpoint,
+            _ => false,
+        };
+        let stops = |instr: &Instr| is_never(instr) || marks(instr);
+        let reach =
+            self.checkpoints.entry(checkpoint).or_insert_with(|| Reach::with(module, &stops));
+        let is_it = |horizon: &Horizon| match *horizon {
+            Horizon::Start => false,
+            Horizon::Never(pc) => marks(&module.code[pc as usize]),
+        };
+        points.iter().find_map(|&pc| {
+            let found = reach.at(pc);
+            let is_on_a_way = found.is_more || found.horizons.iter().any(is_it);
+            let is_never = |horizon: &&Horizon| **horizon != Horizon::Start && !is_it(horizon);
+            let never = found.horizons.iter().find(is_never);
+            if let Some(way) = never.and_then(|never| reach.way(pc, *never)) {
+                let is_certain = !is_on_a_way;
+                return Some(ShortfallKind::Stopped { way, after_actions: None, is_certain });
+            }
+            match (is_on_a_way, found.horizons.contains(&Horizon::Start)) {
+                (false, true) => Some(ShortfallKind::OnNoWay),
+                (true, true) => Some(ShortfallKind::NotOnEveryWay),
+                (_, false) => None,
+            }
+        })
+    }
+}

@@ -1,0 +1,329 @@
+//! The program as a graph of what may stop going back: a node where that changes, and from each
+//! node edges to what was there before.
+//!
+//! A function is one pass over its code, since every join names its jump, and a row of instructions
+//! between two nodes shares the node before it. So the graph is linear in the program, and the sets
+//! of horizons, which are not, need not be written down. A function that is called while the
+//! [`flag`](crate::flag) is set is another *context* of it. Knows nothing of what stops.
+
+use crate::flag::{Flag, Touch};
+use obverse_bytecode::Module;
+use obverse_isa::{Instr, Label};
+use std::ops::Range;
+
+pub(crate) type NodeId = u32;
+
+/// Stands for no node: a point that is not come to.
+pub(crate) const NOWHERE: NodeId = NodeId::MAX;
+
+/// By the value of the flag: a node, or nowhere.
+pub(crate) type ByFlag = [NodeId; 2];
+
+/// The state of a point that is not come to.
+const UNREACHED: ByFlag = [NOWHERE; 2];
+
+/// What was there before a node.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Source {
+    pub(crate) node: NodeId,
+    /// The last instruction between that node and this one.
+    pub(crate) until: u32,
+}
+
+/// Where what stops going back changes.
+#[derive(Clone, Copy, Debug)]
+pub(crate) enum Node {
+    /// The beginning of a context.
+    Entry { context: u32 },
+    /// An instruction that cannot be gone back over.
+    Horizon { before: NodeId },
+    /// Two ways meet, or one comes here.
+    Merge { sources: [Option<Source>; 2] },
+    /// Behind a call: by the flag before it, what was there, and the context that is called; with
+    /// the flag that it returns with.
+    Call { before: ByFlag, contexts: [u32; 2], flag: bool },
+    /// Behind a block with a reverse of its own, which is passed over: what was before it, and
+    /// what was at its end.
+    Block { before: ByFlag, inside: NodeId },
+}
+
+/// A function, called with the flag at a value.
+#[derive(Clone, Debug)]
+pub(crate) struct Context {
+    pub(crate) function: usize,
+    /// Its nodes.
+    pub(crate) nodes: Range<u32>,
+    /// What is there at its end, by the flag.
+    pub(crate) exits: ByFlag,
+    /// Where its points begin in those of the graph.
+    points: usize,
+}
+
+/// Where a context is entered from.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Entrance {
+    /// The call.
+    pub(crate) pc: u32,
+    pub(crate) before: NodeId,
+    pub(crate) callee: u32,
+}
+
+/// A block in whose place a function is run in reverse.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Replacement {
+    /// The end of the block.
+    pub(crate) pc: u32,
+    pub(crate) before: ByFlag,
+    pub(crate) inside: NodeId,
+    pub(crate) function: usize,
+}
+
+/// The graph of a module, as far as calls lead.
+pub(crate) struct Graph {
+    pub(crate) nodes: Vec<Node>,
+    /// The instruction of each node.
+    pub(crate) pcs: Vec<u32>,
+    /// The context of each node.
+    pub(crate) owners: Vec<u32>,
+    pub(crate) contexts: Vec<Context>,
+    /// The contexts of each function, by the flag.
+    pub(crate) by_function: Vec<[Option<u32>; 2]>,
+    pub(crate) entrances: Vec<Entrance>,
+    pub(crate) replacements: Vec<Replacement>,
+    /// What is there behind each instruction of each context, by the flag.
+    points: Vec<ByFlag>,
+}
+
+impl Graph {
+    /// The graph of a module that keeps the rules of the verifier; `stops` says which instructions
+    /// are horizons.
+    pub(crate) fn of(module: &Module, stops: &dyn Fn(&Instr) -> bool) -> Self {
+        let graph = Self {
+            nodes: Vec::new(),
+            pcs: Vec::new(),
+            owners: Vec::new(),
+            contexts: Vec::new(),
+            by_function: vec![[None; 2]; module.functions.len()],
+            entrances: Vec::new(),
+            replacements: Vec::new(),
+            points: Vec::new(),
+        };
+        let mut builder = Builder { module, stops, flag: Flag::of(module), graph };
+        if !module.functions.is_empty() {
+            builder.context(0, false);
+        }
+        let mut done = 0;
+        while done < builder.graph.contexts.len() {
+            builder.function(done as u32);
+            done += 1;
+        }
+        let mut graph = builder.graph;
+        graph.entrances.sort_by_key(|entrance| entrance.callee);
+        graph
+    }
+
+    /// Where a context is entered from.
+    pub(crate) fn entrances_of(&self, context: u32) -> &[Entrance] {
+        let first = self.entrances.partition_point(|entrance| entrance.callee < context);
+        let count = self.entrances[first..].partition_point(|one| one.callee == context);
+        &self.entrances[first..first + count]
+    }
+
+    /// What is there before an instruction, in a context that holds it: by the flag.
+    pub(crate) fn before(&self, module: &Module, context: u32, pc: u32) -> ByFlag {
+        let context = &self.contexts[context as usize];
+        let first = module.functions[context.function].first;
+        // Nothing stands before the first instruction, which is landed on.
+        let at = (pc.saturating_sub(first) as usize).saturating_sub(1);
+        self.points.get(context.points + at).copied().unwrap_or(UNREACHED)
+    }
+
+    /// The contexts of a function.
+    pub(crate) fn contexts_of(&self, function: usize) -> impl Iterator<Item = u32> + '_ {
+        self.by_function.get(function).into_iter().flatten().copied().flatten()
+    }
+}
+
+struct Builder<'m> {
+    module: &'m Module,
+    stops: &'m dyn Fn(&Instr) -> bool,
+    flag: Flag,
+    graph: Graph,
+}
+
+impl Builder<'_> {
+    /// The context of a function that is called with the flag at a value.
+    fn context(&mut self, function: usize, flag: bool) -> u32 {
+        let known = self.graph.by_function[function][usize::from(flag)];
+        known.unwrap_or_else(|| {
+            let index = self.graph.contexts.len() as u32;
+            let context = Context { function, nodes: 0..0, exits: UNREACHED, points: 0 };
+            self.graph.contexts.push(context);
+            self.graph.by_function[function][usize::from(flag)] = Some(index);
+            index
+        })
+    }
+
+    /// One pass over the code of a context.
+    fn function(&mut self, context: u32) {
+        let function = self.graph.contexts[context as usize].function;
+        let (first, end) =
+            (self.module.functions[function].first, self.module.functions[function].end);
+        let is_set = self.graph.by_function[function][1] == Some(context);
+        let nodes = self.graph.nodes.len() as u32;
+        let points = self.graph.points.len();
+        let mut entry = UNREACHED;
+        entry[usize::from(is_set)] = self.node(context, first, Node::Entry { context });
+        self.graph.points.push(entry);
+        let mut pass = Pass { context, points, first, jumps_back: Vec::new() };
+        for pc in first + 1..end {
+            let state = self.step(&mut pass, pc);
+            self.graph.points.push(state);
+        }
+        for (node, flag, from) in std::mem::take(&mut pass.jumps_back) {
+            let came = self.jumped(&pass, from)[flag];
+            if let Node::Merge { sources } = &mut self.graph.nodes[node as usize] {
+                sources[1] = (came != NOWHERE).then_some(Source { node: came, until: from });
+            }
+        }
+        let exits = self.graph.points[points..].iter().nth_back(1).copied();
+        let done = &mut self.graph.contexts[context as usize];
+        done.nodes = nodes..self.graph.nodes.len() as u32;
+        done.exits = exits.unwrap_or(UNREACHED);
+        done.points = points;
+    }
+
+    fn node(&mut self, context: u32, pc: u32, node: Node) -> NodeId {
+        let id = self.graph.nodes.len() as NodeId;
+        self.graph.nodes.push(node);
+        self.graph.pcs.push(pc);
+        self.graph.owners.push(context);
+        id
+    }
+
+    /// What is there behind an instruction.
+    fn step(&mut self, pass: &mut Pass, pc: u32) -> ByFlag {
+        let instr = self.module.code[pc as usize];
+        let before = self.point(pass, pc - 1);
+        if (self.stops)(&instr) {
+            return before
+                .map(|before| self.unless_nowhere(pass, pc, before, Node::Horizon { before }));
+        }
+        match instr {
+            Instr::Call { function, .. } => self.call(pass, pc, before, function.index()),
+            Instr::BlockSkip { from } => self.block(pass, pc, before, from, None),
+            Instr::BlockReplace { from, function } => {
+                self.block(pass, pc, before, from, Some(function.index()))
+            }
+            _ => match (instr.join_from(), self.flag.touch(self.module, pc as usize)) {
+                (Some(from), _) => self.join(pass, pc, &instr, from.0),
+                (None, Touch::Set(value)) => self.set(pass, pc, before, value),
+                (None, Touch::JumpsIf(value)) => {
+                    let mut stays = before;
+                    stays[usize::from(value)] = NOWHERE;
+                    stays
+                }
+                (None, Touch::None) => before,
+            },
+        }
+    }
+
+    fn point(&self, pass: &Pass, pc: u32) -> ByFlag {
+        self.graph.points[pass.points + (pc - pass.first) as usize]
+    }
+
+    fn unless_nowhere(&mut self, pass: &Pass, pc: u32, before: NodeId, node: Node) -> NodeId {
+        if before == NOWHERE { NOWHERE } else { self.node(pass.context, pc, node) }
+    }
+
+    /// What a jump takes along.
+    fn jumped(&self, pass: &Pass, from: u32) -> ByFlag {
+        let mut before = self.point(pass, from - 1);
+        if let Touch::JumpsIf(value) = self.flag.touch(self.module, from as usize) {
+            before[usize::from(!value)] = NOWHERE;
+        }
+        before
+    }
+
+    fn join(&mut self, pass: &mut Pass, pc: u32, instr: &Instr, from: u32) -> ByFlag {
+        let is_land = matches!(instr, Instr::Land { .. });
+        let beside = if is_land { UNREACHED } else { self.point(pass, pc - 1) };
+        let comes_later = from > pc;
+        let jumped = if comes_later { UNREACHED } else { self.jumped(pass, from) };
+        [0, 1].map(|flag| {
+            let is_back = comes_later && self.may_be(flag);
+            let source = |node: NodeId, until| (node != NOWHERE).then_some(Source { node, until });
+            let sources = [source(beside[flag], pc - 1), source(jumped[flag], from)];
+            let is_reached = is_back || sources.iter().any(Option::is_some);
+            if !is_reached {
+                return NOWHERE;
+            }
+            let node = self.node(pass.context, pc, Node::Merge { sources });
+            if is_back {
+                pass.jumps_back.push((node, flag, from));
+            }
+            node
+        })
+    }
+
+    /// The flag is set: whatever it was before.
+    fn set(&mut self, pass: &Pass, pc: u32, before: ByFlag, value: bool) -> ByFlag {
+        let sources = before.map(|node| (node != NOWHERE).then_some(Source { node, until: pc }));
+        let mut state = UNREACHED;
+        if sources.iter().any(Option::is_some) {
+            state[usize::from(value)] = self.node(pass.context, pc, Node::Merge { sources });
+        }
+        state
+    }
+
+    fn call(&mut self, pass: &Pass, pc: u32, before: ByFlag, function: usize) -> ByFlag {
+        let mut contexts = [u32::MAX; 2];
+        for flag in [false, true] {
+            let before = before[usize::from(flag)];
+            if before != NOWHERE {
+                let callee = self.context(function, flag);
+                contexts[usize::from(flag)] = callee;
+                self.graph.entrances.push(Entrance { pc, before, callee });
+            }
+        }
+        if before == UNREACHED {
+            return UNREACHED;
+        }
+        [false, true].map(|flag| match self.may_be(usize::from(flag)) {
+            true => self.node(pass.context, pc, Node::Call { before, contexts, flag }),
+            false => NOWHERE,
+        })
+    }
+
+    /// Whether the flag can have this value anywhere.
+    fn may_be(&self, flag: usize) -> bool {
+        flag == 0 || self.flag.is_some()
+    }
+
+    fn block(
+        &mut self,
+        pass: &Pass,
+        pc: u32,
+        at_end: ByFlag,
+        from: Label,
+        function: Option<usize>,
+    ) -> ByFlag {
+        let before = self.point(pass, from.0 - 1);
+        at_end.map(|inside| {
+            if let (Some(function), true) = (function, inside != NOWHERE) {
+                let replacement = Replacement { pc, before, inside, function };
+                self.graph.replacements.push(replacement);
+            }
+            self.unless_nowhere(pass, pc, inside, Node::Block { before, inside })
+        })
+    }
+}
+
+/// A pass over the code of a context.
+struct Pass {
+    context: u32,
+    points: usize,
+    first: u32,
+    /// The joins of jumps that come later: the node, the flag, the jump.
+    jumps_back: Vec<(NodeId, usize, u32)>,
+}
