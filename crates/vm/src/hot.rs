@@ -524,8 +524,8 @@ pub(crate) fn reverse<const ONE: bool>(
 ) -> Exit {
     let mut run = Reverse { code, values: borrow!(values), tape };
     let mut pc = place.pc;
-    // A count that went below nothing, as one from a tape that was tampered with can, is below every
-    // floor.
+    // A count that went below nothing, as one from a tape that was tampered with can, is below
+    // every floor.
     let mut left = place.steps().wrapping_sub(floor).cast_signed();
     macro_rules! dispatch {
         ($(

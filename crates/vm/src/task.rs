@@ -1,11 +1,11 @@
 //! Forks: branches of a program that run as tasks, in turns.
 //!
-//! A task is a place in the code and the calls under way there; the frame of the function that forks
-//! is everybody's. A turn ends when something was commanded of the workcell, or its branch
+//! A task is a place in the code and the calls under way there; the frame of the function that
+//! forks is everybody's. A turn ends when something was commanded of the workcell, or its branch
 //! has ended; then the next branch goes on that has not. The tape keeps one switch a turn: whose it
-//! was, and how many steps it took. So the turns are taken back in their order, whatever
-//! rule they were taken by. While an error is pending, and in a block with a reverse of its own, the
-//! turn does not end: the other tasks are held where they are, between statements.
+//! was, and how many steps it took. So the turns are taken back in their order, whatever rule they
+//! were taken by. While an error is pending, and in a block with a reverse of its own, the turn
+//! does not end: the other tasks are held where they are, between statements.
 //!
 //! Knows nothing of what the statements of a turn do.
 
@@ -241,8 +241,8 @@ impl Machine<'_> {
         Ok(())
     }
 
-    /// At the beginning of a turn, going back: undo the fork, if no turn was before; otherwise it is
-    /// the turn of the task before again. Whether that was all of the step.
+    /// At the beginning of a turn, going back: undo the fork, if no turn was before; otherwise it
+    /// is the turn of the task before again. Whether that was all of the step.
     pub(crate) fn turn_back(&mut self) -> Result<bool, Stop> {
         let steps = self.state.steps();
         let at = self.state.place.pc.wrapping_sub(1);
