@@ -69,6 +69,21 @@ fn fall_through(code: &[Instr], at: usize, function: &Function, findings: &mut F
     }
 }
 
+/// What takes a block's place begins with locals of the function around the block.
+fn replacement(module: &Module, function: &Function, at: usize, findings: &mut Findings) {
+    let around = module.function_at(at as u32).map(|index| &module.functions[index]);
+    let taken = &function.locals[..usize::from(function.parameters)];
+    let given = around.and_then(|around| around.locals.get(..taken.len()));
+    let is_given = given.is_some_and(|given| {
+        given.iter().zip(taken).all(|(given, taken)| given.of_type == taken.of_type)
+    });
+    if !is_given {
+        let why = "a function that takes a block's place has for parameters the first locals of \
+                   the function around the block";
+        findings.at(at, Rule::Blocks, why);
+    }
+}
+
 /// The deepest that counted loops and blocks nest.
 const MAX_NESTING: usize = 256;
 
@@ -141,10 +156,7 @@ impl Nesting {
                 self.close(at, from.index(), false, Rule::Blocks, findings);
             }
             Instr::BlockReplace { function, from } => {
-                if module.functions[function.index()].parameters != 0 {
-                    let why = "a function that takes a block's place has no parameters";
-                    findings.at(at, Rule::Blocks, why);
-                }
+                replacement(module, &module.functions[function.index()], at, findings);
                 self.close(at, from.index(), false, Rule::Blocks, findings);
             }
             _ => {}
