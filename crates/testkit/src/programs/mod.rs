@@ -20,8 +20,8 @@ use scope::{Frame, Type, Variable};
 pub struct Options {
     /// Barriers and irreversible blocks.
     pub allow_never: bool,
-    /// What leaves the law of going back by the programmer's word: blocks that are skipped or
-    /// replaced in reverse, and I/O operations with a counterpart.
+    /// What leaves the law of going back by the programmer's word: blocks that are skipped,
+    /// replaced or kept in reverse, and I/O operations and advanced moves with a counterpart.
     pub allow_overrides: bool,
     /// Errors.
     pub allow_errors: bool,
@@ -82,6 +82,8 @@ struct Generator<'g, 'u> {
     io: Vec<String>,
     errors: Vec<String>,
     moves: Vec<String>,
+    /// The advanced moves that throw nothing.
+    calm_moves: Vec<String>,
     callees: Vec<Callee>,
     frame: Frame,
 }
@@ -101,6 +103,7 @@ impl<'g, 'u> Generator<'g, 'u> {
             io: Vec::new(),
             errors: Vec::new(),
             moves: Vec::new(),
+            calm_moves: Vec::new(),
             callees: Vec::new(),
             frame: Frame::default(),
         }
