@@ -5,8 +5,8 @@ use obverse_geometry::{JointConfiguration, Pose};
 use obverse_testkit::Ledger;
 use obverse_testkit::logged::Command;
 use obverse_workcell::{
-    Arm, Clock, Dice, DigitalIo, Fault, ForceTorque, Goal, Gripper, ItemId, Items, Motion, MotionEnd,
-    MotionReport, Safety, ToolId, Workcell,
+    Arm, Clock, Dice, DigitalIo, Fault, ForceTorque, Goal, Gripper, ItemId, Items, Motion,
+    MotionEnd, MotionReport, Safety, ToolId, Workcell,
 };
 use std::collections::BTreeMap;
 

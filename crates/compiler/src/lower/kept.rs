@@ -24,7 +24,7 @@ impl Lower<'_> {
     pub(super) fn kept(&mut self, function: FunctionId) {
         let declared = self.program.function(function);
         let (Some(kept), Body::Block(block)) = (declared.kept, &declared.body) else { return };
-        for (changed, local) in self.kept_values(function, kept, block) {
+        for (changed, local) in self.kept_values(function, kept) {
             self.push(match changed {
                 Changed::Local(local) => Instr::PushLocal { local },
                 Changed::Global(global) => Instr::PushGlobal { global },
@@ -68,17 +68,12 @@ impl Lower<'_> {
 
     /// What a block changes, and where it is kept before it. The same wherever the block is a part
     /// of another one that keeps its order.
-    fn kept_values(
-        &mut self,
-        function: FunctionId,
-        kept: Kept,
-        block: &Block,
-    ) -> Vec<(Changed, LocalId)> {
+    fn kept_values(&mut self, function: FunctionId, kept: Kept) -> Vec<(Changed, LocalId)> {
         if let Some(known) = self.kept.get(&function) {
             return known.clone();
         }
         let values: Vec<_> = self
-            .changed(function, kept, block)
+            .changed(function, kept)
             .into_iter()
             .map(|changed| (changed, self.hidden("kept", self.type_of(changed))))
             .collect();
@@ -94,35 +89,39 @@ impl Lower<'_> {
         }
     }
 
-    /// What a block changes of what is there before it, itself and by what it calls.
-    fn changed(&self, function: FunctionId, kept: Kept, block: &Block) -> BTreeSet<Changed> {
+    /// What a block changes of what is there before it, itself, by the blocks within it that keep
+    /// their order, and by what it calls.
+    fn changed(&self, function: FunctionId, kept: Kept) -> BTreeSet<Changed> {
         let mut changed = BTreeSet::new();
-        block.each_statement(&mut |statement| {
-            changed.extend(match &statement.kind {
-                StatementKind::Store(Place::Local(local), _)
-                | StatementKind::Update { place: Place::Local(local), .. } => {
-                    Some(Changed::Local(*local)).filter(|_| local.index() < kept.locals_before)
-                }
-                StatementKind::Set(value) => Some(Changed::Setting(value.setting())),
-                _ => None,
-            });
-        });
         let mut seen = BTreeSet::from([function]);
         let mut to_visit = vec![function];
         while let Some(function) = to_visit.pop() {
-            if let Body::Block(block) = &self.program.function(function).body {
+            let visited = self.program.function(function);
+            let shares = visited.kept.is_some_and(|part| part.around == kept.around);
+            if let Body::Block(block) = &visited.body {
                 block.each_statement(&mut |statement| {
-                    if let StatementKind::Store(Place::Global(global), _)
-                    | StatementKind::Update { place: Place::Global(global), .. } =
-                        &statement.kind
-                    {
-                        changed.insert(Changed::Global(*global));
-                    }
+                    let is_known = |changed: &Changed| match changed {
+                        Changed::Local(local) => shares && local.index() < kept.locals_before,
+                        Changed::Setting(_) => shares,
+                        Changed::Global(_) => true,
+                    };
+                    changed.extend(changed_by(&statement.kind).filter(is_known));
                 });
             }
             let calls = self.effects.calls(function).iter().map(|(callee, _)| *callee);
             to_visit.extend(calls.filter(|callee| seen.insert(*callee)));
         }
         changed
+    }
+}
+
+fn changed_by(kind: &StatementKind) -> Option<Changed> {
+    match kind {
+        StatementKind::Store(place, _) | StatementKind::Update { place, .. } => Some(match place {
+            Place::Local(local) => Changed::Local(*local),
+            Place::Global(global) => Changed::Global(*global),
+        }),
+        StatementKind::Set(value) => Some(Changed::Setting(value.setting())),
+        _ => None,
     }
 }

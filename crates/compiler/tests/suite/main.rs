@@ -13,4 +13,5 @@ mod limits;
 mod module;
 mod reversal;
 mod reversal_mistakes;
+mod reversal_words;
 mod statements;

@@ -325,6 +325,7 @@ impl Generator<'_, '_> {
         self.frame.is_replacement |= is_kept;
         let positions = self.frame.kept_positions;
         if is_kept {
+            self.frame.knows_position = false;
             self.frame.kept_positions = self.frame.positions.len();
         }
         self.block(3)?;
