@@ -12,5 +12,6 @@ pub mod logged;
 pub mod machine_laws;
 pub mod programs;
 pub mod reference;
+pub mod word_laws;
 
 pub use ledger::Ledger;

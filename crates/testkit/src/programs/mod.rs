@@ -11,9 +11,11 @@ mod expression;
 mod motion;
 mod scope;
 mod statement;
+mod word;
 
 use arbitrary::{Result, Unstructured};
 use scope::{Frame, Type, Variable};
+pub use word::{BLOCK, Pair, Word, pair};
 
 /// What a program may contain.
 #[derive(Clone, Copy, Debug)]
@@ -111,18 +113,24 @@ impl<'g, 'u> Generator<'g, 'u> {
 
     fn program(&mut self) -> Result<String> {
         let mut items = self.data()?;
-        for index in 0..self.below(4)? {
-            let is_recursive = self.one_in(3)?;
-            let word = if self.one_in(2)? { "action" } else { "sequence" };
-            let parameters = if index == 0 { 0 } else { self.below(4)? };
-            items.push(self.sequence(word, parameters, is_recursive)?);
-        }
+        items.extend(self.sequences()?);
         items.push(self.main()?);
         items.extend(self.error_declarations()?);
         // Declarations see each other in any order.
         let turn = self.below(items.len())?;
         items.rotate_left(turn);
         Ok(items.join("\n"))
+    }
+
+    fn sequences(&mut self) -> Result<Vec<String>> {
+        let mut items = Vec::new();
+        for index in 0..self.below(4)? {
+            let is_recursive = self.one_in(3)?;
+            let word = if self.one_in(2)? { "action" } else { "sequence" };
+            let parameters = if index == 0 { 0 } else { self.below(4)? };
+            items.push(self.sequence(word, parameters, is_recursive)?);
+        }
+        Ok(items)
     }
 
     /// A number below a bound, small where randomness has run out.
