@@ -21,8 +21,8 @@
 //!
 //! - `given:` sets the workcell up: `joints`, `output N`, and what it will answer: `input N`,
 //!   `force`, `draw N`. `stopped = 0.5` stops the act half way, `in_the_way = 0.5` is there for a
-//!   motion with a force limit to meet, `holds_back = 0.5` once for one that goes to joints. With `visit = 2` it is the second time that control comes
-//!   there.
+//!   motion with a force limit to meet, `holds_back = 0.5` once for one that goes to joints. With
+//!   `visit = 2` it is the second time that control comes there.
 //! - `before:` is what its clauses say, and may say little.
 //! - `after:` is *exactly* the state before with what the clauses change, a step further. `tape +=`
 //!   is what was recorded; `commands` is what the workcell was told, nothing if it is left out;

@@ -135,7 +135,10 @@ fn without_starts(commands: &[Command]) -> Vec<Command> {
 pub fn parameters_hold_going_back(u: &mut Unstructured<'_>) -> Result<bool> {
     let pair = pair(u, Word::With)?;
     let (program, plain) = (program(&pair.with_word), program(&pair.without));
-    let sets = |instr: &Instr| matches!(instr, Instr::SettingSet { setting, .. } if setting.name().starts_with("reverse"));
+    let sets = |instr: &Instr| match instr {
+        Instr::SettingSet { setting, .. } => setting.name().starts_with("reverse"),
+        _ => false,
+    };
     let is_plain = |instr: &Instr| !sets(instr) && instr.opcode() != Opcode::MoveGuardedOpposite;
     if !plain.module().code.iter().all(is_plain) {
         return Ok(false);
@@ -209,7 +212,10 @@ impl Over {
         let uncommanded = cell.clone();
         let module = program.module();
         let id = module.checkpoints.iter().position(|name| name == BLOCK)?;
-        let is_block = |instr: &Instr| matches!(instr, Instr::Checkpoint { checkpoint } if checkpoint.index() == id);
+        let is_block = |instr: &Instr| match instr {
+            Instr::Checkpoint { checkpoint } => checkpoint.index() == id,
+            _ => false,
+        };
         let block = module.code.iter().position(is_block)? as u32;
         let mut machine = machine(program, &cell);
         for _ in 0..MAX_STEPS {
