@@ -5,7 +5,7 @@
 //! runs that one alone.
 
 use arbitrary::{Result, Unstructured};
-use obverse_testkit::{files, laws, machine_laws, reach_laws};
+use obverse_testkit::{files, laws, machine_laws, reach_laws, word_laws};
 use std::collections::BTreeSet;
 
 /// How many modules each law sees.
@@ -72,6 +72,14 @@ laws! {
         round_trips >= 100;
     laws: compiles >= 100 agrees_forward >= 95 agrees_backward >= 75;
     files: files_are_one_program >= 60;
+    word_laws:
+        words_restore_the_program >= 50
+        skipped_blocks_command_nothing >= 30
+        replacements_command_what_they_say >= 30
+        kept_blocks_command_the_same_again >= 10
+        parameters_hold_going_back >= 10
+        io_counterparts_command_what_they_say >= 50
+        move_counterparts_command_what_they_say >= 50;
 }
 
 #[test]

@@ -1,5 +1,7 @@
 //! The types of operands: how each is laid out, read back from hostile bytes, and named.
 
+use crate::columns::Type;
+
 /// The kinds of operand, as the assembler, the verifier and the reference tell them apart.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum OperandKind {
@@ -193,7 +195,7 @@ macro_rules! choice_operand {
         $($(#[doc = $item_doc:literal])+ $item:ident = $number:literal $text:literal,)*
     })*) => {$(
         $(#[doc = $doc])+
-        #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+        #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
         pub enum $name { $($(#[doc = $item_doc])+ $item = $number,)* }
 
         impl $name {
@@ -245,6 +247,8 @@ choice_operand! {
         Fast = 3 "fast",
         /// The fastest.
         VeryFast = 4 "very_fast",
+        /// None is named: normal going forward; in reverse, that of the way forward.
+        Unnamed = 5 "unnamed",
     }
     /// What holds for the motions that follow.
     Setting Setting {
@@ -252,6 +256,12 @@ choice_operand! {
         Speed = 0 "speed",
         /// The tool.
         Tool = 1 "tool",
+        /// The speed of motions that go back.
+        ReverseSpeed = 2 "reverse.speed",
+        /// The force in newtons that stops a motion that goes back; infinite for none.
+        ReverseForceLimit = 3 "reverse.force_limit",
+        /// Whether motions go back on a straight line of the tool, whatever way they came.
+        ReverseStraight = 4 "reverse.straight",
     }
     /// A signed axis of a frame.
     Axis Axis {
@@ -291,5 +301,30 @@ impl Level {
     #[must_use]
     pub fn is_high(self) -> bool {
         self == Self::High
+    }
+}
+
+impl Setting {
+    /// The type of its values.
+    #[must_use]
+    pub fn of_type(self) -> Type {
+        match self {
+            Self::Speed | Self::ReverseSpeed => Type::Speed,
+            Self::Tool => Type::Tool,
+            Self::ReverseForceLimit => Type::Real,
+            Self::ReverseStraight => Type::Bool,
+        }
+    }
+
+    /// What it is before a program sets it: the bits of a value of its type. The tool is the
+    /// workcell's to say.
+    #[must_use]
+    pub fn initial(self) -> u64 {
+        match self {
+            Self::Speed => SpeedId::Normal as u64,
+            Self::ReverseSpeed => SpeedId::Unnamed as u64,
+            Self::ReverseForceLimit => f64::INFINITY.to_bits(),
+            Self::Tool | Self::ReverseStraight => 0,
+        }
     }
 }

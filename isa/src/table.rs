@@ -226,6 +226,9 @@ macro_rules! for_each_op {
 0x86 MoveGuarded "move.guarded" (prefix: Prefix, axis: Axis, frame: Frame) [real real --] after_forward(Joints) kinematic;
 /// Move to a remembered position. In reverse, to the recorded start.
 0x87 MoveSlot "move.slot" (slot: SlotId, path: Path) [--] after_forward(Joints) kinematic;
+/// Move as `move.guarded` does. In reverse, straight back to the recorded start with the same force
+/// limit: being stopped by more is a fault there, from which it may be tried again.
+0x88 MoveGuardedOpposite "move.guarded.opposite" (prefix: Prefix, axis: Axis, frame: Frame) [real real --] after_forward(Joints) kinematic;
 
 /// Remember where the arm is; the position remembered before is saved.
 0x90 Remember "remember" (slot: SlotId) [--] after_forward(Joints) sense;
@@ -265,7 +268,9 @@ macro_rules! for_each_op {
 /// the workcell is commanded nothing.
 0xb4 BlockSkip "block.skip" (from: Label) [--] always reversal;
 /// End a block in whose place a function is run in reverse: the workcell is commanded what the
-/// function says, and then the state of the program is restored as always.
+/// function says, and then the state of the program is restored as always. The function begins with
+/// the frame around it as it is here: the locals that it has as parameters, the counters, the
+/// positions.
 0xb5 BlockReplace "block.replace" (function: FunctionId, from: Label) [--] always reversal;
 
 /// Raise an error: it becomes pending, and whoever drives the machine is told.

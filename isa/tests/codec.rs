@@ -9,9 +9,10 @@ use obverse_isa::{
 /// How many values an operand of a kind and a width has, if it is no signed number.
 fn choices(kind: OperandKind, width: usize) -> i64 {
     match kind {
-        OperandKind::Level | OperandKind::Setting | OperandKind::Path => 2,
+        OperandKind::Level | OperandKind::Path => 2,
         OperandKind::Frame => 3,
-        OperandKind::Speed => 5,
+        OperandKind::Setting => 5,
+        OperandKind::Speed => 6,
         OperandKind::Axis => 6,
         _ => 1 << (8 * width as u32),
     }

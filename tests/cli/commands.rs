@@ -143,6 +143,23 @@ fn a_call_in_which_nothing_happens_is_not_told() {
 
 /// What is passed over in reverse stays as it is, and is not called identical.
 #[test]
+fn back_names_the_force_that_holds_a_motion_back() {
+    let bench = Bench::new("back_held");
+    let program = "cell \"peg_in_hole.toml\"\n\
+        joints start = [3.425, -1.0, 1.2, -1.8, -1.57, 0.3] rad\n\
+        advanced move insert { distance 300 mm forward stop if force > 5 N speed slow\n\
+        succeeds if distance > 200 mm opposite force in reverse }\n\
+        sequence main { set 0 high sleep 0.5 s move to start advance insert }\n";
+    bench.write("held.obv", program);
+    // The peg jams with this seed, and goes straight in with the other.
+    let held = bench.ends(1, &["back", "--seed", "5", "held.obv"]);
+    let said = "fault: going back over held.obv:3 `distance 300 mm forward`: stopped on the way by";
+    assert!(held.stdout.contains(said), "{}", held.stdout);
+    assert!(held.stdout.contains(", and the limit is 5.0 N"), "{}", held.stdout);
+    bench.ends(0, &["back", "--seed", "1", "held.obv"]);
+}
+
+#[test]
 fn back_says_where_the_workcell_is_left_otherwise() {
     let bench = Bench::new("otherwise");
     bench.write("s.obv", "sequence main { skip in reverse { set 1 high } }\n");

@@ -167,7 +167,7 @@ fn a_tape_with_anything_in_it_is_shown_or_refused() {
         |state| state.frames[0].words = vec![u64::MAX; 1000],
         |state| state.frames[0].positions = vec![[f64::NAN; 6]; 1000],
         |state| state.globals = vec![u64::MAX; 1000],
-        |state| state.settings = [u64::MAX; 2],
+        |state| state.settings = [u64::MAX; 5],
         |state| state.raised = vec![u16::MAX; 1000],
         |state| state.pending = Some((false, None)),
         |state| state.pending = Some((true, Some(true))),

@@ -5,8 +5,8 @@ use obverse_geometry::{JointConfiguration, Pose};
 use obverse_testkit::Ledger;
 use obverse_testkit::logged::Command;
 use obverse_workcell::{
-    Arm, Clock, Dice, DigitalIo, Fault, ForceTorque, Gripper, ItemId, Items, Motion, MotionEnd,
-    MotionReport, Safety, ToolId, Workcell,
+    Arm, Clock, Dice, DigitalIo, Fault, ForceTorque, Goal, Gripper, ItemId, Items, Motion,
+    MotionEnd, MotionReport, Safety, ToolId, Workcell,
 };
 use std::collections::BTreeMap;
 
@@ -20,6 +20,8 @@ pub(crate) struct Cell {
     pub(crate) draws: BTreeMap<u64, f64>,
     /// How far a motion with a force limit comes before something is in its way, 0 to 1.
     pub(crate) in_the_way: Option<f64>,
+    /// How far the next motion with a force limit that goes to joints comes, 0 to 1.
+    pub(crate) holds_back: Option<f64>,
     last: MotionReport,
 }
 
@@ -32,6 +34,7 @@ impl Cell {
             force_n: 0.0,
             draws: BTreeMap::new(),
             in_the_way: None,
+            holds_back: None,
             last: ledger.last_motion(),
             ledger,
         }
@@ -47,7 +50,11 @@ impl Arm for Cell {
         self.log.push(Command::Execute(*motion));
         let start = self.ledger.joints;
         self.last = self.ledger.execute(motion)?;
-        if let (Some(limit_n), Some(fraction)) = (motion.force_limit_n, self.in_the_way) {
+        let met = match motion.goal {
+            Goal::Joints(_) => motion.force_limit_n.and_then(|_| self.holds_back.take()),
+            _ => self.in_the_way,
+        };
+        if let (Some(limit_n), Some(fraction)) = (motion.force_limit_n, met) {
             self.ledger.joints = start.towards(&self.ledger.joints, fraction);
             self.last.end = MotionEnd::StoppedByForce;
             self.last.distance_m *= fraction;

@@ -21,8 +21,8 @@
 //!
 //! - `given:` sets the workcell up: `joints`, `output N`, and what it will answer: `input N`,
 //!   `force`, `draw N`. `stopped = 0.5` stops the act half way, `in_the_way = 0.5` is there for a
-//!   motion with a force limit to meet. With `visit = 2` it is the second time that control comes
-//!   there.
+//!   motion with a force limit to meet, `holds_back = 0.5` once for one that goes to joints. With
+//!   `visit = 2` it is the second time that control comes there.
 //! - `before:` is what its clauses say, and may say little.
 //! - `after:` is *exactly* the state before with what the clauses change, a step further. `tape +=`
 //!   is what was recorded; `commands` is what the workcell was told, nothing if it is left out;
@@ -32,11 +32,12 @@
 //! - `back:` is exactly the state before, to the bit, and its clauses only repeat what of that is
 //!   worth seeing; `refused = ".."` is a never, for the program's reason. `at = LABEL` is the state
 //!   that was there when control was at that instruction. `back, with:` is the same state but for
-//!   what the clauses say, for those opcodes that restore less by the programmer's own word.
+//!   what the clauses say, for those opcodes that restore less by the programmer's own word, and
+//!   where a fault left the act pending.
 //!   `back in 3 steps:` makes so many.
 //!
 //! Clauses are `key = value`; other keys are the names of locals of the innermost frame, of
-//! globals, and `stack`, `calls`, `counter N`, `slot NAME`, `joints`, `output N`, `speed`, `tool`,
+//! globals, and `stack`, `calls`, `counter N`, `slot NAME`, `joints`, `output N`, the settings,
 //! `raised`, `draws`, `blocks`, `pending`; of forks `turn`, whose turn it is, and `waiting`, where
 //! the other tasks stand. A `;;` line that begins with no such word goes on with
 //! the one above.

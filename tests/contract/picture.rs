@@ -6,7 +6,7 @@
 use super::cell::Cell;
 use super::{Clause, Value};
 use obverse_bytecode::Module;
-use obverse_isa::SpeedId;
+use obverse_isa::{Setting, SpeedId};
 use obverse_testkit::Ledger;
 use obverse_testkit::logged::Command;
 use obverse_vm::Machine;
@@ -46,8 +46,9 @@ pub(crate) fn of(machine: &Machine<'_>, cell: &Cell) -> Picture {
     for (global, word) in module.globals.iter().zip(&state.globals) {
         put(&global.name, vec![*word]);
     }
-    put("speed", vec![state.settings[0]]);
-    put("tool", vec![state.settings[1]]);
+    for setting in Setting::ALL {
+        put(setting.name(), vec![state.settings[*setting as usize]]);
+    }
     put("raised", state.raised.iter().map(|&error| u64::from(error)).collect());
     put("draws", vec![state.draws]);
     put("blocks", vec![u64::from(machine.state().open_blocks())]);

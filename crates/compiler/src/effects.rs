@@ -67,7 +67,8 @@ impl Effects {
         let mut effect = Effect::default();
         block.each_statement(&mut |statement| match &statement.kind {
             StatementKind::Throw(error) => effect.raise(*error, for_caller),
-            StatementKind::Advance(guarded) => {
+            StatementKind::Kept(block) => effect.calls.push((*block, statement.span)),
+            StatementKind::Advance(guarded, _) => {
                 for error in &self.functions[guarded.index()].for_caller {
                     effect.raise(*error, for_caller);
                 }

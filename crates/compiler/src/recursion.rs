@@ -56,7 +56,7 @@ fn may_leave(statement: &Statement, effects: &Effects) -> bool {
     statement.each(&mut |one| {
         found |= match &one.kind {
             StatementKind::Return | StatementKind::Throw(_) => true,
-            StatementKind::Call(callee, _) | StatementKind::Advance(callee) => {
+            StatementKind::Call(callee, _) | StatementKind::Advance(callee, _) => {
                 effects.leaves(*callee) || !effects.left_by(*callee).is_empty()
             }
             _ => false,

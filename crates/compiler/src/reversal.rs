@@ -13,9 +13,15 @@ use std::collections::HashSet;
 /// Report what cannot be in a block that is skipped, replaced, or replaces another.
 pub(crate) fn check(program: &Program, effects: &Effects, reports: &mut Reports) {
     let mut reported = HashSet::new();
+    let mut opposites = HashSet::new();
     for (id, function) in program.numbered() {
         let Body::Block(block) = &function.body else { continue };
         block.each_statement(&mut |statement| {
+            if let StatementKind::Advance(_, Some(counterpart)) = &statement.kind
+                && opposites.insert(*counterpart)
+            {
+                check_opposite(program.function(*counterpart), reports);
+            }
             if let StatementKind::Reversed(inner, _) = &statement.kind {
                 inner.each_statement(&mut |within| {
                     if reported.insert(within.span) {
@@ -33,7 +39,7 @@ pub(crate) fn check(program: &Program, effects: &Effects, reports: &mut Reports)
 fn check_barrier(within: &Statement, block: Span, effects: &Effects, reports: &mut Reports) {
     let barrier = match &within.kind {
         StatementKind::Barrier(_) | StatementKind::Irreversible(..) => Some(within.span),
-        StatementKind::Call(callee, _) => effects.barrier(*callee),
+        StatementKind::Call(callee, _) | StatementKind::Kept(callee) => effects.barrier(*callee),
         _ => None,
     };
     let Some(barrier) = barrier else { return };
@@ -71,13 +77,26 @@ fn check_replacement(
     }
 }
 
+/// An advanced move that takes another one's place in reverse throws nothing.
+fn check_opposite(function: &Function, reports: &mut Reports) {
+    let Body::Guarded(guarded) = &function.body else { return };
+    let throws = [guarded.on_failure.throws, guarded.on_success.throws];
+    if let Some((_, place)) = throws.into_iter().flatten().next() {
+        let message = "no error is responded to in reverse, and this raises one";
+        reports.add(
+            Diagnostic::error(Code::ErrorInReverse, place, message, "raises an error")
+                .with_label(function.named, "this takes another move's place in reverse"),
+        );
+    }
+}
+
 fn first_throw(function: &Function, effects: &Effects) -> Option<Span> {
     let Body::Block(block) = &function.body else { return None };
     let mut first = None;
     block.each_statement(&mut |statement| {
         let throws = match &statement.kind {
             StatementKind::Throw(_) => true,
-            StatementKind::Advance(guarded) => !effects.left_by(*guarded).is_empty(),
+            StatementKind::Advance(guarded, _) => !effects.left_by(*guarded).is_empty(),
             _ => false,
         };
         if throws && first.is_none() {

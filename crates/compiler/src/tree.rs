@@ -49,8 +49,19 @@ pub(crate) struct Function {
     pub(crate) layout: Layout,
     /// The settings that hold to its end, and where what held before is kept meanwhile.
     pub(crate) modal: Vec<(Setting, LocalId)>,
+    /// If it is a block that keeps its order in reverse: what it shares.
+    pub(crate) kept: Option<Kept>,
     /// What it does.
     pub(crate) body: Body,
+}
+
+/// A block that is both a part of a function and a function of its own, with the same frame.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Kept {
+    /// The function that it is a part of.
+    pub(crate) around: FunctionId,
+    /// How many locals there were before it: those after them are its own.
+    pub(crate) locals_before: usize,
 }
 
 /// How many words a frame has at the most.
@@ -156,20 +167,29 @@ pub(crate) enum Place {
 }
 
 /// What a setting is set to.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Debug)]
 pub(crate) enum SettingValue {
     /// A speed.
     Speed(SpeedId),
     /// A tool.
     Tool(ToolId),
+    /// The speed of motions that go back.
+    ReverseSpeed(SpeedId),
+    /// The force in newtons that stops a motion that goes back.
+    ReverseForceLimit(Expression),
+    /// That motions go back on a straight line.
+    ReverseStraight,
 }
 
 impl SettingValue {
     /// Which setting it is.
-    pub(crate) fn setting(self) -> Setting {
+    pub(crate) fn setting(&self) -> Setting {
         match self {
             Self::Speed(_) => Setting::Speed,
             Self::Tool(_) => Setting::Tool,
+            Self::ReverseSpeed(_) => Setting::ReverseSpeed,
+            Self::ReverseForceLimit(_) => Setting::ReverseForceLimit,
+            Self::ReverseStraight => Setting::ReverseStraight,
         }
     }
 }
@@ -179,8 +199,8 @@ impl SettingValue {
 pub(crate) enum StatementKind {
     /// Move the arm.
     Move(Motion),
-    /// Call an advanced move.
-    Advance(FunctionId),
+    /// Call an advanced move, in whose place another one is run in reverse.
+    Advance(FunctionId, Option<FunctionId>),
     /// Call a sequence or an action.
     Call(FunctionId, Vec<Expression>),
     /// Call an I/O operation, in whose place another one is run in reverse.
@@ -278,6 +298,8 @@ pub(crate) enum StatementKind {
     Irreversible(ReasonId, Block),
     /// A block that is passed over in reverse, or in whose place a function is run.
     Reversed(Block, Option<FunctionId>),
+    /// A block that is the body of this function, and in whose place that is run in reverse.
+    Kept(FunctionId),
     /// Raise an error.
     Throw(ErrorId),
 }
@@ -310,6 +332,8 @@ pub(crate) struct GuardedMove {
     pub(crate) frame: Frame,
     /// The force that stops it, in newtons; without one, contact is a collision.
     pub(crate) limit: Option<Prepared>,
+    /// Whether the way back has the same limit.
+    pub(crate) is_opposed: bool,
     /// Its speed, and where the former one is kept meanwhile.
     pub(crate) speed: Option<(SpeedId, LocalId)>,
     /// What it comes to: metres and newtons.

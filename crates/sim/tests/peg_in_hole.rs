@@ -94,6 +94,28 @@ fn without_a_guard_the_bottom_is_a_collision_and_the_arm_waits_to_be_released() 
 }
 
 #[test]
+fn a_guarded_way_out_leads_to_the_start_or_is_stopped_where_the_peg_is_held() {
+    let mut ends = Vec::new();
+    for seed in 1..=40 {
+        let mut sim = ready(seed);
+        sim.execute(&push(START, 0.3, 5.0)).unwrap();
+        let out = Motion { force_limit_n: Some(5.0), speed: Speed::Slow, ..by_line(START) };
+        let report = sim.execute(&out).unwrap();
+        // It holds there, without a stop, and another command may follow.
+        assert!(!sim.is_stopped());
+        assert_eq!(sim.joints().same_bits(&START), report.end == MotionEnd::Reached);
+        assert_eq!(report.peak_force_n > 5.0 && !sim.joints().same_bits(&START), {
+            report.end == MotionEnd::StoppedByForce
+        });
+        sim.execute(&by_line(START)).unwrap();
+        assert!(sim.joints().same_bits(&START));
+        ends.push(report.end);
+    }
+    let held = ends.iter().filter(|end| **end == MotionEnd::StoppedByForce).count();
+    assert!((1..20).contains(&held), "{ends:?}");
+}
+
+#[test]
 fn a_peg_that_is_let_go_in_the_hole_stays_there() {
     let mut sim = ready(1);
     sim.execute(&push(START, 0.3, 5.0)).unwrap();

@@ -291,6 +291,8 @@ pub struct AdvancedMove<'s> {
     pub name: Name<'s>,
     /// Its clauses in the order written.
     pub clauses: Vec<Spanned<MoveClause<'s>>>,
+    /// `reverse NAME`: the advanced move that takes its place in reverse.
+    pub counterpart: Option<Name<'s>>,
     /// The whole declaration.
     pub span: Span,
 }
@@ -319,6 +321,8 @@ pub enum MoveClause<'s> {
     OnSuccess(Vec<Spanned<Behaviour<'s>>>),
     /// `on failure { … }` (rule Abehave)
     OnFailure(Vec<Spanned<Behaviour<'s>>>),
+    /// `opposite force in reverse`: the way back has the force limit of the way there.
+    OppositeForce,
 }
 
 /// What an advanced move does afterwards (the paper's rule Abehave).
@@ -577,8 +581,29 @@ pub enum StatementKind<'s> {
         /// In reverse.
         replacement: Block<'s>,
     },
+    /// `keep in reverse { … }`: in reverse it is run in its forward order again.
+    KeepInReverse(Block<'s>),
+    /// `with speed slow, force limit 20 N in reverse { … }`: going back over what is in it, the
+    /// arm moves otherwise than it came.
+    WithInReverse {
+        /// What is otherwise; each at most once, checked later.
+        parameters: Vec<Spanned<ReverseParameter<'s>>>,
+        /// The block.
+        block: Block<'s>,
+    },
     /// `throw NAME`
     Throw(Name<'s>),
+}
+
+/// What may be otherwise going back.
+#[derive(Clone, Debug, PartialEq)]
+pub enum ReverseParameter<'s> {
+    /// `speed slow`
+    Speed(SpeedWord),
+    /// `force limit 20 N`: more force than that stops the motion back.
+    ForceLimit(Expression<'s>),
+    /// `straight moves`: with the TCP on a straight line.
+    StraightMoves,
 }
 
 /// Where a move goes.

@@ -434,13 +434,14 @@ codes! {
              either."
         wrong "sequence main { var n = 1 if n > 0 { return } ending when n > 0 }"
         right "sequence main { var n = 1 if n > 0 { return } }"
-    OuterVariableInReverse "E0405" "a variable of the sequence in a block that replaces another"
-        why "The block after `in reverse` is run on its own while the program goes backwards: it \
-             has its own variables, and those of the whole program, but not those of the sequence \
-             it stands in."
-        wrong "sequence main { var n = 1 s do { wait 2 s } in reverse { wait n } }"
-        right "var n = 1 s\n\
-               sequence main { do { wait 2 s } in reverse { wait n } }"
+    OuterVariableInReverse "E0405" "a variable of the sequence, changed in reverse"
+        why "The block after `in reverse` is run while the program goes backwards, and then all \
+             that the program knew is what it was before. The block may read the variables and \
+             the positions of the sequence around it, as they are at the end of what it replaces; \
+             what it changes is its own. For the same reason a block that keeps its order in \
+             reverse does not remember a position anew that was remembered before it."
+        wrong "sequence main { var n = 1 s do { wait n } in reverse { n = 2 s wait n } }"
+        right "sequence main { var n = 1 s do { wait n } in reverse { var m = 2 s wait m } }"
     ErrorInReverse "E0406" "a block that replaces another and can fail"
         why "The block after `in reverse` is run while the program goes backwards, where no error \
              is responded to. Neither it nor what it calls may throw."

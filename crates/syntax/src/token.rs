@@ -91,26 +91,28 @@ tokens! {
         Advance "advance" And "and" Barrier "barrier" Break "break" Call "call"
         Checkpoint "checkpoint" Distance "distance" Do "do" Else "else" False "false" For "for"
         Force "force" Holding "holding" If "if" Input "input" Io "io" Irreversible "irreversible"
+        Keep "keep"
         Loop "loop" Mod "mod" Move "move" Not "not" Or "or" Repeat "repeat" Return "return"
         Sequence "sequence" Set "set" Skip "skip" Sleep "sleep" Throw "throw" To "to"
         Toggle "toggle" True "true" Until "until" Var "var" Wait "wait" While "while"
     }
     free {
-        Action "action" Actions "actions" Advanced "advanced" After "after" Always "always" At "at"
-        Backward "backward" Backwards "backwards" Base "base" By "by" Cell "cell"
+        Action "action" Actions "actions" Advanced "advanced" After "after" Always "always"
+        At "at" Backward "backward" Backwards "backwards" Base "base" By "by" Cell "cell"
         Continue "continue" Current "current" Down "down" Ending "ending" Entered "entered"
         Error "error" Escalating "escalating" Failure "failure" Fast "fast" Fatal "fatal"
         Forward "forward" From "from" High "high" Import "import" In "in" Initial "initial"
         Item "item" Joints "joints" Keyframe "keyframe" Learned "learned" Left "left"
-        Lighter "lighter" Linearly "linearly" Low "low" Normal "normal" Of "of" On "on" Once "once"
-        Operator "operator" Otherwise "otherwise" Output "output" Perturbation "perturbation"
-        Perturbed "perturbed" Position "position" Program "program" Recover "recover"
-        Recoverable "recoverable" Requires "requires" Respond "respond" Restart "restart"
-        Reverse "reverse" Reversible "reversible" Reversing "reversing" Right "right"
-        Severity "severity" Slow "slow" Slower "slower" Speed "speed" Start "start" Stop "stop"
-        Succeeds "succeeds" Success "success" Tcp "tcp" Then "then" Times "times" Tool "tool"
-        ToolMount "toolmount" Up "up" Using "using" Very "very" Warning "warning" When "when"
-        With "with" X "x" Y "y" Z "z"
+        Lighter "lighter" Limit "limit" Linearly "linearly" Low "low" Moves "moves" Normal "normal"
+        Of "of" On "on" Once "once" Operator "operator" Opposite "opposite" Otherwise "otherwise"
+        Output "output" Perturbation "perturbation" Perturbed "perturbed" Position "position"
+        Program "program" Recover "recover" Recoverable "recoverable" Requires "requires"
+        Respond "respond" Restart "restart" Reverse "reverse" Reversible "reversible"
+        Reversing "reversing" Right "right" Severity "severity" Slow "slow" Slower "slower"
+        Speed "speed" Start "start" Stop "stop" Straight "straight" Succeeds "succeeds"
+        Success "success" Tcp "tcp" Then "then" Times "times" Tool "tool" ToolMount "toolmount"
+        Up "up" Using "using" Very "very" Warning "warning" When "when" With "with" X "x" Y "y"
+        Z "z"
     }
     signs {
         OpenBrace "{" CloseBrace "}" OpenParenthesis "(" CloseParenthesis ")" OpenBracket "["
@@ -141,6 +143,7 @@ impl Token {
                 | If
                 | Io
                 | Irreversible
+                | Keep
                 | Loop
                 | Move
                 | Repeat

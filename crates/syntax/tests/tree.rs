@@ -193,6 +193,17 @@ fn each_file_of_several_is_read_alone() {
 }
 
 #[test]
+fn an_advanced_move_has_a_counterpart_and_a_way_back() {
+    let text = "advanced move in1 { distance 1 mm x opposite force in reverse } reverse out1";
+    let Item::AdvancedMove(guarded) = item(text) else { panic!() };
+    assert_eq!(guarded.counterpart.map(|name| name.value), Some("out1"));
+    assert!(matches!(guarded.clauses[1].value, MoveClause::OppositeForce));
+    let text = "advanced move in1 { distance 1 mm x in tcp }";
+    let Item::AdvancedMove(guarded) = item(text) else { panic!() };
+    assert!(guarded.counterpart.is_none());
+}
+
+#[test]
 fn an_io_operation_has_primitives_and_a_counterpart() {
     let Item::Io(io) = item("io open { set 0 low; toggle 3 sleep 0.5 s } reverse close") else {
         panic!()
@@ -508,6 +519,18 @@ fn outline(statement: &Statement<'_>) -> String {
         StatementKind::ReplaceInReverse { block: body, replacement } => {
             format!("do{}{}", block(body), block(replacement))
         }
+        StatementKind::KeepInReverse(body) => format!("keep{}", block(body)),
+        StatementKind::WithInReverse { parameters, block: body } => {
+            let words: Vec<String> = parameters
+                .iter()
+                .map(|parameter| match &parameter.value {
+                    ReverseParameter::Speed(word) => format!("{word:?}"),
+                    ReverseParameter::ForceLimit(limit) => show(limit),
+                    ReverseParameter::StraightMoves => "straight".to_owned(),
+                })
+                .collect();
+            format!("with:{}{}", words.join(","), block(body))
+        }
         StatementKind::Throw(name) => format!("throw:{}", name.value),
     }
 }
@@ -543,6 +566,13 @@ fn statements_are_told_apart() {
         ("irreversible \"why\" { break }", "irreversible:why{break}"),
         ("skip in reverse { break }", "skip{break}"),
         ("do { break } in reverse { return }", "do{break}{return}"),
+        ("keep in reverse { break }", "keep{break}"),
+        ("with speed very slow in reverse { break }", "with:VerySlow{break}"),
+        (
+            "with force limit a + 2 N, straight moves, speed fast in reverse { }",
+            "with:(a Add 2.0N),straight,Fast{}",
+        ),
+        ("with = limit straight = moves", "with:Set:limit straight:Set:moves"),
         ("throw lost", "throw:lost"),
     ];
     for (source, outline) in cases {

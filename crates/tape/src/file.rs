@@ -44,7 +44,7 @@ pub struct Snapshot {
     /// The variables of the program.
     pub globals: Vec<u64>,
     /// The settings by identity.
-    pub settings: [u64; 2],
+    pub settings: [u64; 5],
     /// The errors that are pending, oldest first.
     pub raised: Vec<u16>,
     /// How many random numbers have been drawn.

@@ -200,7 +200,7 @@ fn alter_state(u: &mut Unstructured<'_>, state: &mut Snapshot) -> Result<()> {
         1 => state.operands.resize(u.int_in_range(0..=300)?, 7),
         2 => state.globals.push(u.arbitrary()?),
         3 => alter_word(u, &mut state.globals)?,
-        4 => state.settings[u.choose_index(2)?] = u.arbitrary()?,
+        4 => state.settings[u.choose_index(5)?] = u.arbitrary()?,
         5 => state.raised.push(u.arbitrary()?),
         6 => state.raised = vec![0; u.int_in_range(0..=5000)?],
         7 => state.draws = extreme(u)?,

@@ -97,8 +97,7 @@ fn function(index: u16, first: u32, end: u32) -> Function {
     }
 }
 
-/// Functions without parameters can take a block's place: the last, and one before most calls of
-/// it.
+/// The one function has them of its caller, and of the frame around a block that it replaces.
 fn has_parameters(index: u16) -> bool {
     index == 2
 }
@@ -550,7 +549,12 @@ impl Body<'_, '_> {
             6 => {
                 self.length();
                 self.length();
-                self.code.push(op::MoveGuarded { prefix: P, axis: Axis::PlusZ, frame: Frame::Tcp });
+                let (axis, frame) = (Axis::PlusZ, Frame::Tcp);
+                if self.flip()? {
+                    self.code.push(op::MoveGuarded { prefix: P, axis, frame });
+                } else {
+                    self.code.push(op::MoveGuardedOpposite { prefix: P, axis, frame });
+                }
             }
             7 => {
                 let slot = SlotId(self.pick(2)?);
@@ -621,17 +625,31 @@ impl Body<'_, '_> {
     }
 
     fn setting(&mut self) -> Result<()> {
-        match self.pick(3)? {
+        match self.pick(6)? {
             0 => {
-                self.code.push(op::PushSetting { setting: Setting::Speed });
-                self.code.push(op::SettingSet { prefix: P, setting: Setting::Speed });
+                let setting = Setting::ALL[usize::from(self.pick(5)?)];
+                self.code.push(op::PushSetting { setting });
+                self.code.push(op::SettingSet { prefix: P, setting });
+            }
+            2 => {
+                self.length();
+                self.code.push(op::SettingSet { prefix: P, setting: Setting::ReverseForceLimit });
+            }
+            3 => {
+                self.bool(1)?;
+                self.code.push(op::SettingSet { prefix: P, setting: Setting::ReverseStraight });
+            }
+            4 => {
+                let speed = SpeedId::ALL[usize::from(self.pick(6)?)];
+                self.code.push(op::PushSpeed { speed });
+                self.code.push(op::SettingSet { prefix: P, setting: Setting::ReverseSpeed });
             }
             1 => {
                 self.code.push(op::PushTool { tool: ToolId(0) });
                 self.code.push(op::SettingSet { prefix: P, setting: Setting::Tool });
             }
             _ => {
-                let speed = SpeedId::ALL[usize::from(self.pick(5)?)];
+                let speed = SpeedId::ALL[usize::from(self.pick(6)?)];
                 self.code.push(op::PushSpeed { speed });
                 self.code.push(op::SettingSet { prefix: P, setting: Setting::Speed });
             }
@@ -826,12 +844,15 @@ impl Body<'_, '_> {
         let was_in_block = std::mem::replace(&mut self.in_block, true);
         self.nested()?;
         self.in_block = was_in_block;
-        match self.pick(3)? {
+        match self.pick(4)? {
             0 => drop(self.code.push(op::BlockSkip { from })),
             // A function that comes before this one, or after it; never itself, so that going back
             // ends.
             1 if self.index > 1 => {
                 self.code.push(op::BlockReplace { function: FunctionId(1), from });
+            }
+            2 if self.index != 2 => {
+                self.code.push(op::BlockReplace { function: FunctionId(2), from });
             }
             _ if self.index + 1 < FUNCTIONS => {
                 self.code.push(op::BlockReplace { function: FunctionId(FUNCTIONS - 1), from });

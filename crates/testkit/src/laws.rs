@@ -12,7 +12,7 @@ use obverse_bytecode::{Verified, verify};
 use obverse_compiler::compile;
 use obverse_syntax::diagnostic::Severity;
 use obverse_vm::{Direction, Limits, Machine, Mark, Stop, Trap, TrapKind};
-use obverse_workcell::{Arm, DigitalIo, Gripper, Workcell};
+use obverse_workcell::{Arm, DigitalIo, Fault, Gripper, Workcell};
 use std::collections::{HashMap, HashSet};
 use std::fmt::Debug;
 
@@ -199,7 +199,9 @@ impl<'s> Case<'s> {
     fn compare_frame(&self, when: &str, expected: &StateCopy, machine: &Machine<'_>) {
         let Some(frame) = machine.state().frames().last() else { return };
         let function = &self.program.module().functions[usize::from(frame.function)];
-        self.same("the sequence", when, &function.name, &expected.function);
+        // A block that is run in reverse is a part of the sequence before the `$` of its name.
+        let sequence = function.name.split('$').next().unwrap_or_default().to_owned();
+        self.same("the sequence", when, &sequence, &expected.function);
         for (local, index) in function.locals.iter().zip(0..) {
             if is_named(&local.name) {
                 let found = frame.local(index);
@@ -225,6 +227,11 @@ impl<'s> Case<'s> {
 /// The program gave it its name.
 fn is_named(name: &str) -> bool {
     !name.starts_with('$')
+}
+
+/// Something was in the way of a motion that goes back with a force limit: it may be tried again.
+pub(crate) fn is_held_back(stop: &Stop) -> bool {
+    matches!(stop, Stop::Fault { fault: Fault::ForceLimit { .. }, .. })
 }
 
 fn is_same_end(expected: &Ending, found: &Stop) -> bool {
@@ -260,7 +267,7 @@ struct Walk<'c> {
 impl Walk<'_> {
     fn is_at_start(&self, machine: &Machine<'_>) -> bool {
         let state = machine.state();
-        state.operands().is_empty() && self.pcs.contains(&state.pc())
+        state.pending().is_none() && state.operands().is_empty() && self.pcs.contains(&state.pc())
     }
 
     /// Step by step to the end.
@@ -291,8 +298,10 @@ impl Walk<'_> {
                 self.place -= 1;
                 self.case.compare("in reverse", self.history[self.place], machine, cell);
             }
-            if let Err(stop) = machine.step(Direction::Reverse, cell, &mut ()) {
-                break stop;
+            match machine.step(Direction::Reverse, cell, &mut ()) {
+                Ok(()) => {}
+                Err(stop) if is_held_back(&stop) => {}
+                Err(stop) => break stop,
             }
         };
         match stop {
@@ -315,7 +324,12 @@ impl Walk<'_> {
     /// From statement to statement, at a run, as far as it went by steps.
     fn reverse_to_marks(&self, machine: &mut Machine<'_>, cell: &mut Logged) {
         for at in (self.place..self.history.len()).rev() {
-            let stop = machine.reverse_to(self.marks[at], cell, &mut ());
+            let stop = loop {
+                let stop = machine.reverse_to(self.marks[at], cell, &mut ());
+                if !is_held_back(&stop) {
+                    break stop;
+                }
+            };
             self.case.require(stop == Stop::AtMark, || format!("no mark was met: {stop:?}"));
             self.case.compare("back at the mark", self.history[at], machine, cell);
         }

@@ -14,5 +14,6 @@ pub mod machine_laws;
 pub mod programs;
 pub mod reach_laws;
 pub mod reference;
+pub mod word_laws;
 
 pub use ledger::Ledger;

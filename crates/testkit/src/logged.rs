@@ -26,6 +26,8 @@ pub struct Logged {
     pub ledger: Ledger,
     /// What it was told to do.
     pub log: Vec<Command>,
+    /// Whether every draw is the same and nothing is ever in the way.
+    pub is_steady: bool,
     last: MotionReport,
 }
 
@@ -35,12 +37,18 @@ impl Logged {
     pub fn new(seed: u64) -> Self {
         let ledger = Ledger::new(seed);
         let last = ledger.last_motion();
-        Self { ledger, log: Vec::new(), last }
+        Self { ledger, log: Vec::new(), is_steady: false, last }
+    }
+
+    /// The same workcell, in which every draw is the same and nothing is ever in the way.
+    #[must_use]
+    pub fn steady(self) -> Self {
+        Self { is_steady: true, ..self }
     }
 
     /// Whether the motion that is logged now meets something, if it feels for it.
     fn meets_something(&self) -> bool {
-        (self.ledger.seed ^ self.log.len() as u64).is_multiple_of(3)
+        !self.is_steady && (self.ledger.seed ^ self.log.len() as u64).is_multiple_of(3)
     }
 }
 
@@ -127,7 +135,7 @@ impl Clock for Logged {
 
 impl Dice for Logged {
     fn draw(&self, counter: u64) -> f64 {
-        self.ledger.draw(counter)
+        self.ledger.draw(if self.is_steady { 0 } else { counter })
     }
 }
 

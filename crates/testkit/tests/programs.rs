@@ -34,7 +34,17 @@ fn no_bytes_give_a_program() {
 
 #[test]
 fn what_is_not_allowed_is_not_there() {
-    let words = ["barrier", "irreversible", "in reverse", "} reverse", "throw", "error"];
+    let words = [
+        "barrier",
+        "irreversible",
+        "skip in reverse",
+        "} in reverse {",
+        "keep in reverse",
+        "} reverse io",
+        "} reverse m",
+        "throw",
+        "error",
+    ];
     let all = texts(Options::default()).concat();
     let none = texts(NOTHING).concat();
     for word in words {
@@ -54,6 +64,9 @@ fn every_statement_is_made_sometimes() {
         " mm up",
         "linearly",
         "reversible always",
+        "straight moves",
+        "force limit ",
+        "opposite force in reverse",
         "advance m",
         "call f",
         "io io",

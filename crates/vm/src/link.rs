@@ -1,5 +1,6 @@
 //! Linking: a module's names to a workcell's numbers, once, before anything moves.
 
+use crate::values::Settings;
 use obverse_bytecode::{Mentioned, Module};
 use obverse_isa::{Instr, Setting};
 use obverse_workcell::{ItemId, Workcell};
@@ -14,7 +15,7 @@ pub struct Links {
     /// By the module's tools.
     pub(crate) tools: Vec<u64>,
     /// The settings that hold when the program starts.
-    pub(crate) settings: [u64; 2],
+    pub(crate) settings: Settings,
 }
 
 /// What a module needs and a workcell has not.
@@ -92,7 +93,9 @@ impl Links {
             }
         }
         errors.extend(missing_lines(module, cell));
-        links.settings[Setting::Speed as usize] = obverse_isa::SpeedId::Normal as u64;
+        for setting in Setting::ALL {
+            links.settings[*setting as usize] = setting.initial();
+        }
         links.settings[Setting::Tool as usize] = u64::from(cell.initial_tool().0);
         if errors.is_empty() { Ok(links) } else { Err(errors) }
     }

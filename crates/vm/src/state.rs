@@ -90,6 +90,20 @@ impl Frame {
         }
     }
 
+    /// Begin with what the frame around has: the locals that are this one's parameters, the
+    /// counters that both have, and the positions.
+    pub(crate) fn begin_with(&mut self, around: &Self, functions: &[Function]) {
+        let function = |frame: &Self| &functions[usize::from(frame.function)];
+        let locals = usize::from(function(self).parameters);
+        let shared = function(self).counters.min(function(around).counters);
+        let counters = 256 - 3 * usize::from(shared)..256;
+        self.words.slots[..locals].copy_from_slice(&around.words.slots[..locals]);
+        self.words.slots[counters.clone()].copy_from_slice(&around.words.slots[counters]);
+        for (own, remembered) in self.positions.iter_mut().zip(&around.positions) {
+            *own = *remembered;
+        }
+    }
+
     /// The words that a function uses: locals, then counters from the top.
     fn used(function: &Function) -> impl Iterator<Item = usize> + use<> {
         let counters = 3 * usize::from(function.counters);

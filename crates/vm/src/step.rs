@@ -551,7 +551,11 @@ impl Machine<'_> {
         self.state
             .compensations
             .push(Compensation { frames: self.state.frames.len() + 1, place: self.state.place });
-        self.state.frames.push(Frame::new(function.0, declared, at as u32 + 1));
+        let mut frame = Frame::new(function.0, declared, at as u32 + 1);
+        if let Some(around) = self.state.frames.last() {
+            frame.begin_with(around, &self.program.module().functions);
+        }
+        self.state.frames.push(frame);
         self.state.place.pc = at;
         self.state.place.jump_forward(declared.first as usize);
         self.tell(Direction::Reverse, at, None, host);

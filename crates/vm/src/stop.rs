@@ -82,6 +82,8 @@ pub enum TrapKind {
     NoKeyframe,
     /// A time to wait that is negative, or no number.
     NotADuration,
+    /// A limit of a force that is not above zero, or no number.
+    NotAForceLimit,
     /// The tape holds as much as it may.
     TapeFull,
     /// A record that must be on the tape is not: the tape belongs to another run.
@@ -116,6 +118,9 @@ impl std::fmt::Display for TrapKind {
                 write!(f, "more than {} calls are under way", crate::state::MAX_FRAMES)
             }
             Self::NotADuration => write!(f, "the time to wait is negative, or no number"),
+            Self::NotAForceLimit => {
+                write!(f, "the limit of a force is not above zero, or no number")
+            }
             Self::NoKeyframe => write!(f, "the item has no such keyframe"),
             Self::TapeFull => {
                 write!(f, "the tape holds as much as it may; a barrier would empty it")

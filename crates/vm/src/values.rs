@@ -24,7 +24,7 @@ impl Default for Words {
 }
 
 /// The identities of the present settings, by [`Setting`].
-pub type Settings = [u64; 2];
+pub type Settings = [u64; Setting::ALL.len()];
 
 /// What does not change while pure instructions run.
 #[derive(Clone, Copy)]

@@ -37,6 +37,13 @@ pub enum Fault {
         /// The contact force when the arm stopped, in newtons.
         force_n: f64,
     },
+    /// A motion that had to come all the way was stopped by its force limit.
+    ForceLimit {
+        /// The largest filtered force, in newtons.
+        force_n: f64,
+        /// The limit, in newtons.
+        limit_n: f64,
+    },
     /// The arm was stopped on the way and holds its position.
     ProtectiveStop {
         /// Where along the path, 0 to 1.
@@ -67,6 +74,8 @@ pub enum FaultKind {
     Singular,
     /// See [`Fault::Collision`].
     Collision,
+    /// See [`Fault::ForceLimit`].
+    ForceLimit,
     /// See [`Fault::ProtectiveStop`].
     ProtectiveStop,
     /// See [`Fault::Stopped`].
@@ -86,6 +95,7 @@ impl FaultKind {
             Self::OutOfReach => "out_of_reach",
             Self::Singular => "singular",
             Self::Collision => "collision",
+            Self::ForceLimit => "force_limit",
             Self::ProtectiveStop => "protective_stop",
             Self::Stopped => "stopped",
             Self::BadCommand => "bad_command",
@@ -103,6 +113,7 @@ impl Fault {
             Self::OutOfReach { .. } => FaultKind::OutOfReach,
             Self::Singular { .. } => FaultKind::Singular,
             Self::Collision { .. } => FaultKind::Collision,
+            Self::ForceLimit { .. } => FaultKind::ForceLimit,
             Self::ProtectiveStop { .. } => FaultKind::ProtectiveStop,
             Self::Stopped => FaultKind::Stopped,
             Self::BadCommand { .. } => FaultKind::BadCommand,
@@ -136,6 +147,9 @@ impl fmt::Display for Fault {
                 "{body} met {with} at {:.0} % of the way, with {force_n:.1} N",
                 fraction * 1e2
             ),
+            Self::ForceLimit { force_n, limit_n } => {
+                write!(f, "stopped on the way by {force_n:.1} N, and the limit is {limit_n:.1} N")
+            }
             Self::ProtectiveStop { fraction } => {
                 write!(f, "protective stop at {:.0} % of the way", fraction * 1e2)
             }

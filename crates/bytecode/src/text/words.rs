@@ -168,8 +168,8 @@ mod tests {
     fn every_choice_reads_back() {
         let kinds = [
             (OperandKind::Level, 2),
-            (OperandKind::Speed, 5),
-            (OperandKind::Setting, 2),
+            (OperandKind::Speed, 6),
+            (OperandKind::Setting, 5),
             (OperandKind::Axis, 6),
             (OperandKind::Frame, 3),
             (OperandKind::Path, 2),

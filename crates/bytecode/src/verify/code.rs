@@ -182,9 +182,8 @@ fn types_of(
                 .map(|constant| module.constants[constant].of_type()),
         ),
         StackItem::Setting => {
-            types.extend(first_operand(instr, OperandKind::Setting).map(|setting| {
-                if setting == Setting::Speed as usize { Type::Speed } else { Type::Tool }
-            }));
+            let setting = first_operand(instr, OperandKind::Setting);
+            types.extend(setting.and_then(|at| Setting::ALL.get(at)).map(|it| it.of_type()));
         }
         StackItem::Parameters => {
             if let Some(called) = first_operand(instr, OperandKind::Function) {

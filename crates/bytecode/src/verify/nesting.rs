@@ -2,7 +2,7 @@
 //! operands are in range and that jumps and joins name each other.
 
 use super::{Findings, MAX_BRANCHES, Rule};
-use crate::module::Module;
+use crate::module::{Function, Module};
 use obverse_isa::{CounterId, Instr, Label, Opcode};
 
 /// The deepest that counted loops, blocks and forks nest.
@@ -48,6 +48,21 @@ struct Open {
     /// The branches before it of the same fork: how many, and the counters of their loops.
     branches: usize,
     others: u128,
+}
+
+/// What takes a block's place begins with locals of the function around the block.
+fn replacement(module: &Module, function: &Function, at: usize, findings: &mut Findings) {
+    let around = module.function_at(at as u32).map(|index| &module.functions[index]);
+    let taken = &function.locals[..usize::from(function.parameters)];
+    let given = around.and_then(|around| around.locals.get(..taken.len()));
+    let is_given = given.is_some_and(|given| {
+        given.iter().zip(taken).all(|(given, taken)| given.of_type == taken.of_type)
+    });
+    if !is_given {
+        let why = "a function that takes a block's place has for parameters the first locals of \
+                   the function around the block";
+        findings.at(at, Rule::Blocks, why);
+    }
 }
 
 /// The counter of an instruction at an end of a counted loop.
@@ -108,10 +123,7 @@ impl Nesting {
             Instr::BlockBegin {} => self.begin(at, Kind::Block),
             Instr::BlockSkip { from } => self.end_block(at, from.index(), findings),
             Instr::BlockReplace { function, from } => {
-                if module.functions[function.index()].parameters != 0 {
-                    let why = "a function that takes a block's place has no parameters";
-                    findings.at(at, Rule::Blocks, why);
-                }
+                replacement(module, &module.functions[function.index()], at, findings);
                 self.end_block(at, from.index(), findings);
             }
             Instr::Fork { .. } => self.begin(at + 1, Kind::Branch { fork: at }),

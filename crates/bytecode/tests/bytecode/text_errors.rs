@@ -100,7 +100,7 @@ fn choices() {
     says("output.set 3, hi", "15: `hi` is no level; there are low, high");
     says(
         "push.speed quick",
-        "12: `quick` is no speed; there are very_slow, slow, normal, fast, very_fast",
+        "12: `quick` is no speed; there are very_slow, slow, normal, fast, very_fast, unnamed",
     );
     says("move.relative x, tcp", "15: `x` is no axis; there are +x, -x, +y, -y, +z, -z");
     says(

@@ -81,11 +81,11 @@ fn word_of(module: &Module, pc: u32, instr: &Instr, word: u64) -> String {
         | Instr::Draw { local }
         | Instr::WaitInput { local, .. } => typed(type_of_local(module, pc, local), word),
         Instr::StoreGlobal { global, .. } => typed(type_of_global(module, global), word),
-        Instr::SettingSet { setting: Setting::Speed, .. } => typed(Some(Type::Speed), word),
         // Which number the workcell has for a tool is not on the tape.
         Instr::SettingSet { setting: Setting::Tool, .. } => {
             format!("tool number {word} of the workcell")
         }
+        Instr::SettingSet { setting, .. } => typed(Some(setting.of_type()), word),
         Instr::ErrorClear { .. } if word == u64::MAX => "not pending".to_owned(),
         Instr::ErrorClear { .. } => format!("place {word} of those pending"),
         _ => plain(word),

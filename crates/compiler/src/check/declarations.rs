@@ -1,5 +1,5 @@
 //! Declarations that are data: joint configurations, items, variables of the program, and the
-//! counterparts of I/O operations.
+//! counterparts of I/O operations and of advanced moves.
 
 use super::Checker;
 use super::expression::Need;
@@ -10,7 +10,8 @@ use crate::units::{Dimension, Unit};
 use obverse_bytecode::Keyframe;
 use obverse_isa::{ItemId, KeyframeId, Type};
 use obverse_syntax::ast::{
-    IoOperation, ItemDeclaration, JointsDeclaration, Name, VariableDeclaration, Vector,
+    AdvancedMove, IoOperation, ItemDeclaration, JointsDeclaration, Name, VariableDeclaration,
+    Vector,
 };
 use obverse_syntax::codes::Code;
 use obverse_syntax::diagnostic::Diagnostic;
@@ -211,11 +212,24 @@ impl<'s> Checker<'s> {
     pub(super) fn check_counterpart(&mut self, io: &IoOperation<'s>) {
         let Some(name) = io.counterpart else { return };
         let is_io = |meaning| matches!(meaning, Meaning::Io(_));
-        let Some(Meaning::Io(counterpart)) = self.resolve(name, "an I/O operation", is_io) else {
-            return;
-        };
-        if let Found::Here(symbol) = self.names.find(io.name.value)
-            && let Meaning::Io(id) = symbol.meaning
+        let counterpart = self.resolve(name, "an I/O operation", is_io);
+        self.set_counterpart(io.name, counterpart);
+    }
+
+    /// `reverse pull_peg` after an advanced move.
+    pub(super) fn check_opposite_move(&mut self, guarded: &AdvancedMove<'s>) {
+        let Some(name) = guarded.counterpart else { return };
+        let is_guarded = |meaning| matches!(meaning, Meaning::Guarded(_));
+        let counterpart = self.resolve(name, "an advanced move", is_guarded);
+        self.set_counterpart(guarded.name, counterpart);
+    }
+
+    fn set_counterpart(&mut self, of: Name<'s>, counterpart: Option<Meaning>) {
+        if let Found::Here(symbol) = self.names.find(of.value)
+            && let (
+                Meaning::Io(id) | Meaning::Guarded(id),
+                Some(Meaning::Io(counterpart) | Meaning::Guarded(counterpart)),
+            ) = (symbol.meaning, counterpart)
         {
             self.signatures[id.index()].counterpart = Some(counterpart);
         }

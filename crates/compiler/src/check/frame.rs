@@ -64,6 +64,8 @@ pub(crate) struct FrameScope {
     pub(crate) is_full: bool,
     /// How many blocks in reverse have been made functions of.
     pub(crate) replacements: usize,
+    /// In a block that keeps its order in reverse: how many positions were remembered before it.
+    pub(crate) kept_positions: usize,
     hoists: Vec<Hoist>,
     busy: Vec<LocalId>,
     free: Vec<LocalId>,
@@ -84,6 +86,7 @@ impl FrameScope {
             is_dead: false,
             is_full: false,
             replacements: 0,
+            kept_positions: 0,
             hoists: Vec::new(),
             busy: Vec::new(),
             free: Vec::new(),

@@ -4,10 +4,10 @@ use super::Checker;
 use super::frame::FrameScope;
 use super::names::Meaning;
 use crate::report::warning;
-use crate::tree::{Block, Body, Function, MAX_SLOTS, Statement};
+use crate::tree::{Block, Body, Function, Layout, MAX_SLOTS, Statement};
 use crate::types::ValueType;
 use obverse_bytecode::FunctionKind;
-use obverse_isa::{FunctionId, LocalId};
+use obverse_isa::{FunctionId, LocalId, Type};
 use obverse_syntax::ast::{self, IoOperation, Name, Sequence};
 use obverse_syntax::codes::Code;
 use obverse_syntax::span::Span;
@@ -74,15 +74,43 @@ impl<'s> Checker<'s> {
     /// The block after `in reverse`, as a function of its own.
     pub(super) fn replacement(&mut self, block: &ast::Block<'s>, span: Span) -> FunctionId {
         let id = self.new_function(span);
-        let name = format!("{}$reverse{}", self.frame.name, self.frame.replacements);
-        self.frame.replacements += 1;
+        let name = self.name_in_reverse();
+        let (layout, counters) = (self.frame.layout.clone(), self.frame.counters);
+        let around = self.frame.function;
         let outer = self.enter_function(id, &name, span);
+        self.share_frame(around, layout, counters, span);
         let body = Body::Block(self.block(block));
         let function = self.leave_function(outer, FunctionKind::Replacement, span, body);
+        self.keep_function(id, function);
+        id
+    }
+
+    /// A block that is run in reverse begins with the frame around it.
+    fn share_frame(&mut self, around: FunctionId, layout: Layout, counters: u8, span: Span) {
+        for (local, variable) in (0..=u8::MAX).map(LocalId).zip(&layout.locals) {
+            if variable.of_type == Type::Item {
+                self.keyframes.pass((around, local), (self.frame.function, local));
+            }
+        }
+        match u8::try_from(layout.locals.len()) {
+            Ok(parameters) => self.frame.layout = Layout { parameters, counters, ..layout },
+            Err(_) => self.report_full(span),
+        }
+        self.frame.counters = counters;
+    }
+
+    /// The name of a further block that is run in reverse.
+    pub(super) fn name_in_reverse(&mut self) -> String {
+        let name = format!("{}$reverse{}", self.frame.name, self.frame.replacements);
+        self.frame.replacements += 1;
+        name
+    }
+
+    /// Keep a block that is run in reverse with the functions.
+    pub(super) fn keep_function(&mut self, id: FunctionId, function: Function) {
         if let Some(slot) = id.index().checked_sub(1).and_then(|at| self.functions.get_mut(at)) {
             *slot = Some(function);
         }
-        id
     }
 
     /// A function whose body is checked by `check`.
@@ -116,7 +144,8 @@ impl<'s> Checker<'s> {
         self.names.close(&outer.scope);
         self.names.close_frame(&outer.names);
         let inner = std::mem::replace(&mut self.frame, outer.frame);
-        Function { name: inner.name, kind, named, layout: inner.layout, modal: inner.modal, body }
+        let (name, layout, modal) = (inner.name, inner.layout, inner.modal);
+        Function { name, kind, named, layout, modal, kept: None, body }
     }
 
     /// Statements in braces; those that are never reached are checked, warned about and left out.

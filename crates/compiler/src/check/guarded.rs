@@ -45,6 +45,7 @@ struct Clauses<'a, 's> {
     succeeds_if: Option<(&'a ast::Expression<'s>, Span)>,
     on_success: Option<(&'a [Spanned<Behaviour<'s>>], Span)>,
     on_failure: Option<(&'a [Spanned<Behaviour<'s>>], Span)>,
+    opposite: Option<((), Span)>,
 }
 
 impl<'s> Checker<'s> {
@@ -103,6 +104,9 @@ impl<'s> Checker<'s> {
                 MoveClause::OnFailure(behaviours) => {
                     ("on failure", once(&mut clauses.on_failure, behaviours.as_slice(), span))
                 }
+                MoveClause::OppositeForce => {
+                    ("opposite force", once(&mut clauses.opposite, (), span))
+                }
             };
             if let (word, Some(first)) = first {
                 self.report_twice(word, span, first);
@@ -124,6 +128,9 @@ impl<'s> Checker<'s> {
         let limit = clauses.stop_if.map(|(condition, span)| self.force_limit(condition, span));
         if limit.as_ref().is_some_and(|limit| !limit.value.of_type.is_unknown()) {
             self.warn_of_silent_stop(clauses);
+        }
+        if let (Some(((), span)), None) = (clauses.opposite, &limit) {
+            self.report_nothing_opposed(span);
         }
         let speed = clauses
             .speed
@@ -154,6 +161,7 @@ impl<'s> Checker<'s> {
             axis,
             frame,
             limit,
+            is_opposed: clauses.opposite.is_some(),
             speed,
             results,
             succeeds,
@@ -163,6 +171,14 @@ impl<'s> Checker<'s> {
             initial,
             spans,
         }
+    }
+
+    fn report_nothing_opposed(&mut self, span: Span) {
+        let message = format!("no force stops `{}`, so that none has an opposite", self.frame.name);
+        let diagnostic =
+            Diagnostic::error(Code::MissingClause, span, message, "`stop if` is missing")
+                .with_help("write for example `stop if force > 5 N`, or leave this out");
+        self.reports.add(diagnostic);
     }
 
     /// A move that is stopped has failed, and here nobody would know.

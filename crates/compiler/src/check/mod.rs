@@ -14,6 +14,7 @@ mod motion;
 mod names;
 mod operators;
 mod program;
+mod reverse;
 mod signals;
 mod statement;
 
@@ -113,17 +114,13 @@ impl<'s> Checker<'s> {
         wanted: fn(Meaning) -> bool,
     ) -> Option<Meaning> {
         match self.names.find(name.value) {
-            Found::Here(symbol) => {
+            Found::Here(symbol) | Found::Outside(symbol) => {
                 self.names.mark_used(name.value);
                 if wanted(symbol.meaning) {
                     return Some(symbol.meaning);
                 }
                 let (kind, place) = (symbol.meaning.kind(), symbol.name.span);
                 self.report_wrong_kind(name, kind, place, needed, symbol.meaning);
-            }
-            Found::Outside(symbol) => {
-                self.names.mark_used(name.value);
-                self.report_outer(name, symbol.name.span);
             }
             Found::Nothing => self.report_unknown(name, needed, wanted),
         }
@@ -148,19 +145,17 @@ impl<'s> Checker<'s> {
         self.reports.add(diagnostic);
     }
 
+    /// A name of the sequence around that a block in reverse would change.
     fn report_outer(&mut self, name: Name<'s>, declared: Span) {
+        self.names.mark_used(name.value);
         let message = format!(
-            "`{}` is of the sequence, and the block after `in reverse` does not see it",
+            "`{}` is of the sequence around, and a block that is run in reverse does not change it",
             name.value
         );
-        let diagnostic = Diagnostic::error(
-            Code::OuterVariableInReverse,
-            name.span,
-            message,
-            "not seen from here",
-        )
-        .with_label(declared, "declared in the sequence")
-        .with_help("declare it at the top of the file, or within the block");
+        let at = "changed here";
+        let diagnostic = Diagnostic::error(Code::OuterVariableInReverse, name.span, message, at)
+            .with_label(declared, "declared in the sequence")
+            .with_help("the block may read it; what it changes, declare within the block");
         self.reports.add(diagnostic);
     }
 

@@ -102,7 +102,7 @@ pub(crate) struct Symbol<'s> {
 pub(crate) enum Found<'s> {
     /// It means this.
     Here(Symbol<'s>),
-    /// It is of the sequence around a block that is a function of its own.
+    /// It is of the sequence around a block that is run in reverse, which may read it.
     Outside(Symbol<'s>),
     /// It means nothing.
     Nothing,

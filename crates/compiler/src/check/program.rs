@@ -200,11 +200,8 @@ impl<'s> Checker<'s> {
                 Item::Variable(variable) => self.check_global(variable),
                 Item::Io(io) => self.check_counterpart(io),
                 Item::Error(error) => self.check_error(error),
-                Item::Cell(_)
-                | Item::Import(_)
-                | Item::Signal(_)
-                | Item::AdvancedMove(_)
-                | Item::Sequence(_) => {}
+                Item::AdvancedMove(guarded) => self.check_opposite_move(guarded),
+                Item::Cell(_) | Item::Import(_) | Item::Signal(_) | Item::Sequence(_) => {}
             }
         }
     }

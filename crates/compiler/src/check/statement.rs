@@ -3,7 +3,7 @@
 use super::Checker;
 use super::expression::{MAX_COMPUTED, Need};
 use super::frame::{Around, NamedPosition};
-use super::names::{Found, Meaning};
+use super::names::{Found, Meaning, Symbol};
 use super::operators::binary;
 use crate::response::goes_on_after_throw;
 use crate::tree::{
@@ -11,9 +11,7 @@ use crate::tree::{
 };
 use crate::types::ValueType;
 use obverse_bytecode::Mentioned;
-use obverse_isa::{
-    FunctionId, Instr, Level, LocalId, ReasonId, Setting, SlotId, SpeedId, ToolId, Type,
-};
+use obverse_isa::{FunctionId, Instr, Level, LocalId, ReasonId, SlotId, SpeedId, ToolId, Type};
 use obverse_syntax::ast::{self, AssignOperator, Name, Primitive, Signal, SpeedWord};
 use obverse_syntax::codes::Code;
 use obverse_syntax::diagnostic::Diagnostic;
@@ -72,7 +70,11 @@ impl<'s> Checker<'s> {
             Written::Barrier(reason) => StatementKind::Barrier(self.reason(*reason)),
             Written::Irreversible { .. }
             | Written::SkipInReverse(_)
-            | Written::ReplaceInReverse { .. } => return Some(self.block_with_reverse(written)),
+            | Written::ReplaceInReverse { .. }
+            | Written::KeepInReverse(_) => return Some(self.block_with_reverse(written)),
+            Written::WithInReverse { parameters, block } => {
+                return self.with_in_reverse(parameters, block, span);
+            }
             Written::Throw(name) => return self.throw(*name, span),
         };
         Some((self.done(kind, span), true))
@@ -92,7 +94,9 @@ impl<'s> Checker<'s> {
         let is_guarded = |meaning| matches!(meaning, Meaning::Guarded(_));
         self.lose_position("this advanced move ends where it ends", span);
         match self.resolve(name, "an advanced move", is_guarded)? {
-            Meaning::Guarded(id) => Some(StatementKind::Advance(id)),
+            Meaning::Guarded(id) => {
+                Some(StatementKind::Advance(id, self.signatures[id.index()].counterpart))
+            }
             _ => None,
         }
     }
@@ -229,10 +233,19 @@ impl<'s> Checker<'s> {
     }
 
     fn remember(&mut self, name: Name<'s>) -> Option<StatementKind> {
-        if let Found::Here(symbol) = self.names.find(name.value)
-            && let Meaning::Position(slot) = symbol.meaning
-        {
-            return Some(StatementKind::Remember(slot));
+        match self.names.find(name.value) {
+            Found::Here(Symbol { meaning: Meaning::Position(slot), name: first, .. }) => {
+                if slot.index() < self.frame.kept_positions {
+                    self.report_outer(name, first.span);
+                    return None;
+                }
+                return Some(StatementKind::Remember(slot));
+            }
+            Found::Outside(Symbol { meaning: Meaning::Position(_), name: first, .. }) => {
+                self.report_outer(name, first.span);
+                return None;
+            }
+            _ => {}
         }
         let Ok(slot) = u8::try_from(self.frame.layout.slots.len()) else {
             let message = "a sequence remembers at most 256 positions".to_owned();
@@ -293,7 +306,12 @@ impl<'s> Checker<'s> {
     fn assigned(&mut self, name: Name<'s>) -> Option<(Place, ValueType)> {
         let found = match self.names.find(name.value) {
             Found::Here(symbol) => symbol,
-            _ => {
+            Found::Outside(Symbol { meaning: Meaning::Local(..), name: first, .. }) => {
+                self.report_outer(name, first.span);
+                return None;
+            }
+            Found::Outside(symbol) => symbol,
+            Found::Nothing => {
                 let is_variable =
                     |meaning| matches!(meaning, Meaning::Global(..) | Meaning::Local(..));
                 self.resolve(name, "a variable", is_variable);
@@ -376,10 +394,8 @@ impl<'s> Checker<'s> {
         block: Option<&ast::Block<'s>>,
         span: Span,
     ) -> Checked {
-        let (name, of_type) = match value.setting() {
-            Setting::Speed => ("speed", Type::Speed),
-            Setting::Tool => ("tool", Type::Tool),
-        };
+        let name = value.setting().name();
+        let of_type = value.setting().of_type();
         let Some(block) = block else {
             let setting = value.setting();
             if self.frame.modal.iter().all(|(known, _)| *known != setting) {
@@ -441,13 +457,18 @@ impl<'s> Checker<'s> {
                 let function = self.replacement(replacement, replacement.span);
                 (StatementKind::Reversed(checked, Some(function)), block.span, falls_through)
             }
+            Written::KeepInReverse(block) => {
+                let (function, falls_through) = self.kept(block, written.span);
+                (StatementKind::Kept(function), block.span, falls_through)
+            }
             _ => (StatementKind::Return, written.span, false),
         };
         let header = self.header(written.span.start, inner);
         (self.done(kind, header), falls_through)
     }
 
-    fn reversed_block(&mut self, block: &ast::Block<'s>, span: Span) -> Block {
+    /// A block that is passed as one in reverse.
+    pub(super) fn reversed_block(&mut self, block: &ast::Block<'s>, span: Span) -> Block {
         let header = self.header(span.start, block.span);
         self.frame.around.push(Around::Reversed(header));
         let checked = self.block(block);

@@ -30,7 +30,7 @@ impl Lower<'_> {
         let is_own = |error: &ErrorId| !is_for_caller(&self.program.module.errors[error.index()]);
         match kind {
             StatementKind::Throw(error) => Some(*error).filter(is_own).into_iter().collect(),
-            StatementKind::Advance(guarded) => {
+            StatementKind::Advance(guarded, _) => {
                 self.effects.left_by(*guarded).iter().copied().filter(is_own).collect()
             }
             StatementKind::Call(callee, _) => self.effects.left_by(*callee).to_vec(),

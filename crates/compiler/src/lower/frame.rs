@@ -60,7 +60,7 @@ impl Lower<'_> {
     /// A hidden local more.
     pub(super) fn hidden(&mut self, name: &str, of_type: Type) -> LocalId {
         self.frame.layout.add_hidden(name, of_type).unwrap_or_else(|| {
-            self.too_many("a sequence has no room for the variables that its errors need");
+            self.too_many("a sequence has no room for the hidden variables that it needs");
             LocalId(0)
         })
     }

@@ -11,9 +11,13 @@ impl<'p> Lower<'p> {
     pub(super) fn function(&mut self, id: FunctionId, function: &'p Function) {
         use FunctionKind::{Action, Replacement, Sequence};
         let first = self.code.here();
+        let layout = match function.kept {
+            Some(kept) => self.layout_around(kept),
+            None => function.layout.clone(),
+        };
         self.frame = Frame {
             named: function.named,
-            layout: function.layout.clone(),
+            layout,
             modal: &function.modal,
             has_actions: matches!(function.kind, Action | Replacement | Sequence),
             is_reached: true,
@@ -23,6 +27,7 @@ impl<'p> Lower<'p> {
         self.at(function.named, None);
         self.push(Instr::Enter {});
         match &function.body {
+            Body::Block(block) if function.kept.is_some() => self.kept_body(id, block),
             Body::Block(block) => self.body(block),
             Body::Guarded(guarded) => self.guarded(guarded),
         }

@@ -57,14 +57,17 @@ impl Lower<'_> {
     fn motion_and_results(&mut self, guarded: &GuardedMove) {
         self.at(guarded.spans.motion, None);
         if let Some((speed, _)) = guarded.speed {
-            self.set(SettingValue::Speed(speed));
+            self.set(&SettingValue::Speed(speed));
         }
         self.expression(&guarded.distance.value);
         let (axis, frame) = (guarded.axis, guarded.frame);
         match &guarded.limit {
             Some(limit) => {
                 self.expression(&limit.value);
-                self.push(Instr::MoveGuarded { prefix: PREFIX, axis, frame });
+                self.push(match guarded.is_opposed {
+                    true => Instr::MoveGuardedOpposite { prefix: PREFIX, axis, frame },
+                    false => Instr::MoveGuarded { prefix: PREFIX, axis, frame },
+                });
             }
             None => self.push(Instr::MoveRelative { prefix: PREFIX, axis, frame }),
         }

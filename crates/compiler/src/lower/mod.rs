@@ -9,6 +9,7 @@ mod flow;
 mod frame;
 mod function;
 mod guarded;
+mod kept;
 mod leave;
 mod start;
 mod statement;
@@ -18,8 +19,9 @@ use crate::effects::Effects;
 use crate::report::Reports;
 use crate::tree::Program;
 use frame::Frame;
+use kept::Changed;
 use obverse_bytecode::{ActionKind, CodeBuilder, Constant, Module, SourceEntry, Variable};
-use obverse_isa::{ConstantId, GlobalId, Instr, Type};
+use obverse_isa::{ConstantId, FunctionId, GlobalId, Instr, LocalId, Type};
 use obverse_syntax::codes::Code;
 use obverse_syntax::sources::Sources;
 use obverse_syntax::span::Span;
@@ -64,6 +66,8 @@ struct Lower<'p> {
     source_map: Vec<SourceEntry>,
     functions: Vec<obverse_bytecode::Function>,
     globals: HiddenGlobals,
+    /// For each block that keeps its order in reverse: what it changes, and where that is kept.
+    kept: HashMap<FunctionId, Vec<(Changed, LocalId)>>,
     frame: Frame<'p>,
 }
 
@@ -123,6 +127,7 @@ impl<'p> Lower<'p> {
             source_map: Vec::new(),
             functions: Vec::new(),
             globals,
+            kept: HashMap::new(),
             frame: Frame::default(),
         };
         if global_count > usize::from(u16::MAX) {

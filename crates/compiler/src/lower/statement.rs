@@ -22,17 +22,17 @@ impl Lower<'_> {
 
     fn statement(&mut self, statement: &Statement) {
         use StatementKind::{
-            Advance, Barrier, Break, Call, Checkpoint, For, If, Io, Irreversible, Loop, Move,
+            Advance, Barrier, Break, Call, Checkpoint, For, If, Io, Irreversible, Kept, Loop, Move,
             Output, Remember, Return, Reversed, Set, SetFor, Store, Throw, Update, Wait, WaitInput,
             While,
         };
-        if matches!(statement.kind, Advance(_) | Call(..) | Throw(_)) {
+        if matches!(statement.kind, Advance(..) | Call(..) | Throw(_)) {
             return self.fallible(statement);
         }
         self.begin(statement);
         match &statement.kind {
             Move(motion) => self.motion(motion),
-            Io(function, counterpart) => self.io(*function, *counterpart),
+            Io(function, counterpart) => self.call_or_opposite(*function, *counterpart),
             Wait(time) => {
                 self.expression(time);
                 self.push(Instr::Wait { prefix: PREFIX });
@@ -45,8 +45,8 @@ impl Lower<'_> {
             If { .. } | While { .. } | For { .. } | Loop(_) => self.control(statement),
             Break => self.leave_loop(),
             Return => self.leave(Way::Out),
-            Set(value) => self.set(*value),
-            SetFor { value, former, block } => self.set_for(*value, *former, block),
+            Set(value) => self.set(value),
+            SetFor { value, former, block } => self.set_for(value, *former, block),
             Checkpoint(checkpoint) => self.push(Instr::Checkpoint { checkpoint: *checkpoint }),
             Barrier(reason) => self.push(Instr::Barrier { reason: *reason }),
             Irreversible(reason, block) => {
@@ -60,7 +60,8 @@ impl Lower<'_> {
                 }
             }
             Reversed(block, replacement) => self.reversed(block, *replacement),
-            Advance(_) | Call(..) | Throw(_) => {}
+            Kept(function) => self.kept(*function),
+            Advance(..) | Call(..) | Throw(_) => {}
         }
     }
 
@@ -78,8 +79,8 @@ impl Lower<'_> {
         let site = self.begin_site(&due);
         self.begin(statement);
         match &statement.kind {
-            StatementKind::Advance(function) => {
-                self.push(Instr::Call { prefix: PREFIX, function: *function });
+            StatementKind::Advance(function, counterpart) => {
+                self.call_or_opposite(*function, *counterpart);
             }
             StatementKind::Call(function, arguments) => {
                 arguments.iter().for_each(|argument| self.expression(argument));
@@ -123,8 +124,9 @@ impl Lower<'_> {
         }
     }
 
-    /// A call of an I/O operation; with a counterpart it is a block that this replaces.
-    fn io(&mut self, function: FunctionId, counterpart: Option<FunctionId>) {
+    /// A call of an I/O operation or an advanced move; with a counterpart it is a block that this
+    /// replaces.
+    fn call_or_opposite(&mut self, function: FunctionId, counterpart: Option<FunctionId>) {
         let Some(counterpart) = counterpart else {
             return self.push(Instr::Call { prefix: PREFIX, function });
         };
@@ -158,11 +160,15 @@ impl Lower<'_> {
     }
 
     /// Change a setting.
-    pub(super) fn set(&mut self, value: SettingValue) {
-        self.push(match value {
-            SettingValue::Speed(speed) => Instr::PushSpeed { speed },
-            SettingValue::Tool(tool) => Instr::PushTool { tool },
-        });
+    pub(super) fn set(&mut self, value: &SettingValue) {
+        match value {
+            SettingValue::Speed(speed) | SettingValue::ReverseSpeed(speed) => {
+                self.push(Instr::PushSpeed { speed: *speed });
+            }
+            SettingValue::Tool(tool) => self.push(Instr::PushTool { tool: *tool }),
+            SettingValue::ReverseForceLimit(limit) => self.expression(limit),
+            SettingValue::ReverseStraight => self.push_bool(true),
+        }
         self.push(Instr::SettingSet { prefix: PREFIX, setting: value.setting() });
     }
 
@@ -178,7 +184,7 @@ impl Lower<'_> {
         self.push(Instr::SettingSet { prefix: PREFIX, setting });
     }
 
-    fn set_for(&mut self, value: SettingValue, former: LocalId, block: &Block) {
+    fn set_for(&mut self, value: &SettingValue, former: LocalId, block: &Block) {
         let setting = value.setting();
         self.keep(setting, former);
         self.set(value);
@@ -197,7 +203,7 @@ impl Lower<'_> {
     }
 
     /// A block with a reverse of its own: all ways out of it lead over its end.
-    fn reversed(&mut self, block: &Block, replacement: Option<FunctionId>) {
+    pub(super) fn reversed(&mut self, block: &Block, replacement: Option<FunctionId>) {
         let from = Label(self.code.push(Instr::BlockBegin {}));
         self.begin_ways(block);
         let scope = self.scoped(Scope::Reversed(Vec::new()), block);
@@ -217,7 +223,7 @@ impl Lower<'_> {
 fn action_of(kind: &StatementKind) -> Option<ActionKind> {
     match kind {
         StatementKind::Move(_) => Some(ActionKind::Move),
-        StatementKind::Advance(_) => Some(ActionKind::Advance),
+        StatementKind::Advance(..) => Some(ActionKind::Advance),
         StatementKind::Call(..) => Some(ActionKind::Call),
         StatementKind::Io(..) => Some(ActionKind::Io),
         StatementKind::Output { .. } => Some(ActionKind::Primitive),

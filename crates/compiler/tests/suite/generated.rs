@@ -161,7 +161,12 @@ impl Writer {
             11..=13 => self.branch(depth - 1),
             14..=18 => self.any_loop(depth - 1),
             19 => {
-                let text = self.random.pick(&["speed slow", "tool hand"]);
+                let text = self.random.pick(&[
+                    "speed slow",
+                    "tool hand",
+                    "with speed slow, straight moves in reverse",
+                    "with force limit 3 N in reverse",
+                ]);
                 self.write(text);
                 self.block(depth - 1);
             }
@@ -177,6 +182,9 @@ impl Writer {
                 self.write("do");
                 self.reversed(depth - 1);
                 self.write("in reverse { move to a var k = n if k > 3 { return } }");
+            }
+            23 => {
+                self.write("keep in reverse { n += 1 move to b io open speed fast }");
             }
             _ => {
                 self.write("wait until input 3 high for up to 2 s else");

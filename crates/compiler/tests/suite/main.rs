@@ -14,5 +14,6 @@ mod limits;
 mod module;
 mod reversal;
 mod reversal_mistakes;
+mod reversal_words;
 mod shortfalls;
 mod statements;

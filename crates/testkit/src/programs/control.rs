@@ -1,7 +1,7 @@
 //! Blocks: branches, loops, scopes, and the ways out of them. Every block can be left by its end,
 //! so that assertions have two ways to tell apart.
 
-use super::scope::{Frame, Type};
+use super::scope::Type;
 use super::{Generator, MAX_COST};
 use arbitrary::Result;
 
@@ -248,7 +248,10 @@ impl Generator<'_, '_> {
 
     /// A setting for a block.
     fn scoped(&mut self) -> Result<()> {
-        let setting = self.setting()?;
+        let setting = match self.one_in(2)? {
+            true => self.setting_in_reverse()?,
+            false => self.setting()?,
+        };
         self.open(&setting);
         self.block(4)?;
         self.close("");
@@ -293,23 +296,45 @@ impl Generator<'_, '_> {
         Ok(())
     }
 
-    /// A block that is skipped or replaced in reverse.
+    /// `with speed slow, straight moves in reverse`
+    fn setting_in_reverse(&mut self) -> Result<String> {
+        let mut parameters = Vec::new();
+        let first = self.below(3)?;
+        for choice in first..=first + self.below(3)? {
+            parameters.push(match choice % 3 {
+                0 => self.speed()?,
+                1 => "straight moves".to_owned(),
+                _ => format!("force limit max({}, 1 N)", self.expression(Type::Force)?),
+            });
+        }
+        Ok(format!("with {} in reverse", parameters.join(", ")))
+    }
+
+    /// A block that is skipped, replaced or kept in reverse.
     fn reversed(&mut self) -> Result<()> {
-        let outer = (self.frame.in_reversed, self.frame.in_loop);
-        let is_replaced = self.one_in(2)?;
-        self.open(if is_replaced { "do" } else { "skip in reverse" });
+        let outer = (self.frame.in_reversed, self.frame.in_loop, self.frame.is_replacement);
+        let (word, is_replaced, is_kept) = self.choose(&[
+            ("skip in reverse", false, false),
+            ("do", true, false),
+            ("keep in reverse", false, true),
+        ])?;
+        self.open(word);
         (self.frame.in_reversed, self.frame.in_loop) = (true, false);
+        // A kept block is run in reverse too, and may fail as little as one that replaces another;
+        // a position that is remembered before it stays.
+        self.frame.is_replacement |= is_kept;
+        let positions = self.frame.kept_positions;
+        if is_kept {
+            self.frame.knows_position = false;
+            self.frame.kept_positions = self.frame.positions.len();
+        }
         self.block(3)?;
-        (self.frame.in_reversed, self.frame.in_loop) = outer;
+        self.frame.kept_positions = positions;
+        (self.frame.in_reversed, self.frame.in_loop, self.frame.is_replacement) = outer;
         if is_replaced {
             self.close(" in reverse {");
             self.depth += 1;
-            let replacement = Frame {
-                in_reversed: true,
-                is_replacement: true,
-                nesting: self.frame.nesting,
-                ..Frame::new()
-            };
+            let replacement = self.frame.in_reverse();
             let around = std::mem::replace(&mut self.frame, replacement);
             self.block(3)?;
             self.frame = around;

@@ -145,6 +145,9 @@ impl Generator<'_, '_> {
         if self.one_in(2)? {
             let limit = self.choose(&["force > 5 N", "force >= abs(2 N * 2)", "1.5 N < force"])?;
             self.line(&format!("stop if {limit}"));
+            if self.one_in(2)? {
+                self.line("opposite force in reverse");
+            }
         }
         if self.one_in(2)? {
             let speed = self.speed()?;
@@ -159,7 +162,16 @@ impl Generator<'_, '_> {
             ])?;
             self.line(&format!("succeeds if {condition}"));
         }
-        self.close("");
+        let is_calm = !self.text.contains("throw ");
+        match self.calm_moves.last().cloned() {
+            Some(other) if self.options.allow_overrides && self.one_in(2)? => {
+                self.close(&format!(" reverse {other}"));
+            }
+            _ => self.close(""),
+        }
+        if is_calm {
+            self.calm_moves.push(name.clone());
+        }
         self.moves.push(name);
         Ok(self.taken())
     }

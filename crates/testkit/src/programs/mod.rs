@@ -11,17 +11,19 @@ mod expression;
 mod motion;
 mod scope;
 mod statement;
+mod word;
 
 use arbitrary::{Result, Unstructured};
 use scope::{Frame, Type, Variable};
+pub use word::{BLOCK, Pair, Word, pair};
 
 /// What a program may contain.
 #[derive(Clone, Copy, Debug)]
 pub struct Options {
     /// Barriers and irreversible blocks.
     pub allow_never: bool,
-    /// What leaves the law of going back by the programmer's word: blocks that are skipped or
-    /// replaced in reverse, and I/O operations with a counterpart.
+    /// What leaves the law of going back by the programmer's word: blocks that are skipped,
+    /// replaced or kept in reverse, and I/O operations and advanced moves with a counterpart.
     pub allow_overrides: bool,
     /// Errors.
     pub allow_errors: bool,
@@ -92,6 +94,8 @@ struct Generator<'g, 'u> {
     io: Vec<String>,
     errors: Vec<String>,
     moves: Vec<String>,
+    /// The advanced moves that throw nothing.
+    calm_moves: Vec<String>,
     callees: Vec<Callee>,
     frame: Frame,
 }
@@ -113,6 +117,7 @@ impl<'g, 'u> Generator<'g, 'u> {
             io: Vec::new(),
             errors: Vec::new(),
             moves: Vec::new(),
+            calm_moves: Vec::new(),
             callees: Vec::new(),
             frame: Frame::default(),
         }
@@ -120,12 +125,7 @@ impl<'g, 'u> Generator<'g, 'u> {
 
     fn program(&mut self) -> Result<Vec<String>> {
         let mut items = self.data()?;
-        for index in 0..self.below(4)? {
-            let is_recursive = self.one_in(3)?;
-            let word = if self.one_in(2)? { "action" } else { "sequence" };
-            let parameters = if index == 0 { 0 } else { self.below(4)? };
-            items.push(self.sequence(word, parameters, is_recursive)?);
-        }
+        items.extend(self.sequences()?);
         items.push(self.main()?);
         items.extend(self.error_declarations()?);
         // Declarations see each other in any order.
@@ -133,6 +133,17 @@ impl<'g, 'u> Generator<'g, 'u> {
         items.rotate_left(turn);
         // A line between them.
         items.iter_mut().for_each(|item| item.push('\n'));
+        Ok(items)
+    }
+
+    fn sequences(&mut self) -> Result<Vec<String>> {
+        let mut items = Vec::new();
+        for index in 0..self.below(4)? {
+            let is_recursive = self.one_in(3)?;
+            let word = if self.one_in(2)? { "action" } else { "sequence" };
+            let parameters = if index == 0 { 0 } else { self.below(4)? };
+            items.push(self.sequence(word, parameters, is_recursive)?);
+        }
         Ok(items)
     }
 

@@ -63,9 +63,10 @@ impl Generator<'_, '_> {
     /// `position p`
     pub(super) fn remember(&mut self) -> Result<()> {
         let positions = self.frame.positions.clone();
-        let name = match positions.is_empty() || self.one_in(2)? {
+        let free = &positions[self.frame.kept_positions.min(positions.len())..];
+        let name = match free.is_empty() || self.one_in(2)? {
             true => self.name("here"),
-            false => self.choose(&positions)?,
+            false => self.choose(free)?,
         };
         self.line(&format!("position {name}"));
         if !positions.contains(&name) {

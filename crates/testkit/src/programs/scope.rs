@@ -79,6 +79,8 @@ pub(super) struct Frame {
     pub(super) is_replacement: bool,
     /// Whether it is known which position the program named last.
     pub(super) knows_position: bool,
+    /// How many of the positions may not be remembered anew.
+    pub(super) kept_positions: usize,
     /// Whether it passes a barrier.
     pub(super) has_barrier: bool,
     /// Whether readings of the outside may stand in expressions.
@@ -89,6 +91,20 @@ impl Frame {
     /// At the beginning of a sequence.
     pub(super) fn new() -> Self {
         Self { times: 1, may_read: true, ..Self::default() }
+    }
+
+    /// Of a block that replaces another in reverse: it reads what is around it.
+    pub(super) fn in_reverse(&self) -> Self {
+        let read = |variable: &Variable| Variable { is_free: false, ..variable.clone() };
+        Self {
+            variables: self.variables.iter().map(read).collect(),
+            positions: self.positions.clone(),
+            kept_positions: self.positions.len(),
+            in_reversed: true,
+            is_replacement: true,
+            nesting: self.nesting,
+            ..Self::new()
+        }
     }
 }
 

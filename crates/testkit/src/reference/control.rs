@@ -4,7 +4,9 @@ use super::error::Site;
 use super::statement::speed;
 use super::value::Value;
 use super::{Interpreter, Run, Trap};
-use obverse_syntax::ast::{Block, Expression, Primitive, Sequence, Statement, StatementKind};
+use obverse_syntax::ast::{
+    Block, Expression, Primitive, ReverseParameter, Sequence, Statement, StatementKind,
+};
 
 /// Where the program goes on after a statement.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -88,9 +90,19 @@ impl<'p> Interpreter<'p, '_> {
             StatementKind::Speed { block, .. } | StatementKind::Tool { block, .. } => {
                 self.setting(&statement.kind, block.as_ref())
             }
+            StatementKind::WithInReverse { parameters, block } => {
+                let before = self.going_back;
+                for parameter in parameters {
+                    self.reverse_parameter(&parameter.value)?;
+                }
+                let flow = self.block(block)?;
+                self.going_back = before;
+                Ok(flow)
+            }
             // Going forward, the blocks of reversal are blocks.
             StatementKind::Irreversible { block, .. }
             | StatementKind::SkipInReverse(block)
+            | StatementKind::KeepInReverse(block)
             | StatementKind::ReplaceInReverse { block, .. } => self.block(block),
             StatementKind::Advance(_) | StatementKind::Call { .. } | StatementKind::Throw(_) => {
                 self.fallible(statement)
@@ -204,6 +216,17 @@ impl<'p> Interpreter<'p, '_> {
                 flow => return Ok(flow),
             }
         }
+    }
+
+    fn reverse_parameter(&mut self, parameter: &'p ReverseParameter<'p>) -> Run<()> {
+        match parameter {
+            ReverseParameter::Speed(word) => self.going_back.speed = Some(speed(*word)),
+            ReverseParameter::ForceLimit(limit) => {
+                self.going_back.limit_n = self.value(limit)?.real();
+            }
+            ReverseParameter::StraightMoves => self.going_back.is_straight = true,
+        }
+        Ok(())
     }
 
     /// A setting for a block, or else to the end of the call.

@@ -260,6 +260,8 @@ fn blocks_of<'p>(statement: &'p Statement<'p>) -> Vec<&'p Block<'p>> {
             block.iter().collect()
         }
         StatementKind::Irreversible { block, .. }
+        | StatementKind::WithInReverse { block, .. }
+        | StatementKind::KeepInReverse(block)
         | StatementKind::SkipInReverse(block)
         | StatementKind::ReplaceInReverse { block, .. } => vec![block],
         _ => Vec::new(),

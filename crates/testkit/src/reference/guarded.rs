@@ -174,6 +174,8 @@ fn gather<'p>(guarded: &'p AdvancedMove<'p>) -> Clauses<'p> {
             MoveClause::SucceedsIf(condition) => clauses.succeeds = Some(condition),
             MoveClause::OnSuccess(behaviours) => clauses.on_success = aftermath(behaviours),
             MoveClause::OnFailure(behaviours) => clauses.on_failure = aftermath(behaviours),
+            // Of the way back alone.
+            MoveClause::OppositeForce => {}
         }
     }
     clauses

@@ -96,8 +96,9 @@ pub struct StateCopy {
     pub counters: Vec<i64>,
     /// The positions that the call remembers, by name.
     pub positions: BTreeMap<String, [u64; 6]>,
-    /// Speed and tool by identity.
-    pub settings: [u64; 2],
+    /// Speed and tool by identity, and what motions that go back have instead: the speed by
+    /// identity, 5 for none; the force limit in newtons, infinite for none; whether straight.
+    pub settings: [u64; 5],
     /// The errors that are pending, oldest first.
     pub raised: Vec<String>,
     /// How many random numbers have been drawn.
@@ -153,6 +154,14 @@ struct Frame<'p> {
     rounds: u32,
 }
 
+/// What motions that go back have instead of what they had.
+#[derive(Clone, Copy, Debug)]
+struct GoingBack {
+    speed: Option<Speed>,
+    limit_n: f64,
+    is_straight: bool,
+}
+
 struct Interpreter<'p, 'c> {
     program: &'p Program<'p>,
     names: Names<'p>,
@@ -162,6 +171,7 @@ struct Interpreter<'p, 'c> {
     globals: Vec<(&'p str, Value)>,
     speed: Speed,
     tool: u16,
+    going_back: GoingBack,
     raised: Vec<&'p str>,
     draws: u64,
     frames: Vec<Frame<'p>>,
@@ -186,6 +196,7 @@ impl<'p, 'c> Interpreter<'p, 'c> {
             globals: Vec::new(),
             speed: Speed::Normal,
             tool,
+            going_back: GoingBack { speed: None, limit_n: f64::INFINITY, is_straight: false },
             raised: Vec::new(),
             draws: 0,
             frames: vec![Frame::default()],
@@ -219,7 +230,13 @@ impl<'p, 'c> Interpreter<'p, 'c> {
             locals: named(frame.locals.iter().map(|(name, value)| (name, value.bits()))),
             counters: frame.counters.iter().map(|(_, value)| *value).collect(),
             positions: named(frame.positions.iter().map(|(name, at)| (name, at.bits()))),
-            settings: [self.speed as u64, u64::from(self.tool)],
+            settings: [
+                self.speed as u64,
+                u64::from(self.tool),
+                self.going_back.speed.map_or(5, |speed| speed as u64),
+                self.going_back.limit_n.to_bits(),
+                u64::from(self.going_back.is_straight),
+            ],
             raised: self.raised.iter().map(|&error| error.to_owned()).collect(),
             draws: self.draws,
             joints: cell.joints().bits(),

@@ -6,7 +6,7 @@ use crate::stop::TrapKind;
 use crate::values::{Settings, Slots};
 use obverse_bytecode::Module;
 use obverse_geometry::JointConfiguration;
-use obverse_isa::{ErrorId, LocalId, SlotId};
+use obverse_isa::{ErrorId, LocalId, Setting, SlotId, SpeedId};
 use obverse_workcell::{MotionReport, Speed, ToolId, Workcell};
 
 pub(crate) struct Acts<'a> {
@@ -68,12 +68,41 @@ impl Acts<'_> {
     /// # Errors
     /// If there is none: a value from a tape that was tampered with.
     pub(crate) fn speed(&self) -> Result<Speed, TrapKind> {
-        let speed = self.settings[obverse_isa::Setting::Speed as usize];
-        Speed::ALL.get(speed as usize).copied().ok_or(TrapKind::Foreign)
+        Ok(self.named_speed(Setting::Speed)?.unwrap_or(Speed::Normal))
+    }
+
+    /// The speed that holds for a motion that goes back.
+    ///
+    /// # Errors
+    /// As for [`speed`](Self::speed).
+    pub(crate) fn reverse_speed(&self) -> Result<Speed, TrapKind> {
+        match self.named_speed(Setting::ReverseSpeed)? {
+            Some(speed) => Ok(speed),
+            None => self.speed(),
+        }
+    }
+
+    fn named_speed(&self, setting: Setting) -> Result<Option<Speed>, TrapKind> {
+        let speed = self.settings[setting as usize];
+        if speed == SpeedId::Unnamed as u64 {
+            return Ok(None);
+        }
+        Speed::ALL.get(speed as usize).copied().map(Some).ok_or(TrapKind::Foreign)
+    }
+
+    /// The force in newtons that stops a motion that goes back, if one does.
+    pub(crate) fn reverse_force_limit_n(&self) -> Option<f64> {
+        let limit_n = f64::from_bits(self.settings[Setting::ReverseForceLimit as usize]);
+        (limit_n != f64::INFINITY).then_some(limit_n)
+    }
+
+    /// Whether motions go back on a straight line whatever way they came.
+    pub(crate) fn goes_back_straight(&self) -> bool {
+        self.settings[Setting::ReverseStraight as usize] != 0
     }
 
     /// The tool that holds.
     pub(crate) fn tool(&self) -> ToolId {
-        ToolId(self.settings[obverse_isa::Setting::Tool as usize] as u16)
+        ToolId(self.settings[Setting::Tool as usize] as u16)
     }
 }

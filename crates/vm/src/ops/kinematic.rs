@@ -2,7 +2,8 @@
 //!
 //! What is recorded is where the joints were: a pose would leave the turn of the wrist open. Goals
 //! are absolute, counted from the recorded start, so that a motion that was interrupted can be
-//! commanded again in either direction. A motion reverses along the path it took.
+//! commanded again in either direction. A motion reverses along the path it took, at the speed it
+//! had, unless the settings for going back say otherwise.
 
 use super::acts::Acts;
 use crate::class::{AfterForward, Always, Failure};
@@ -10,7 +11,7 @@ use crate::stop::TrapKind;
 use obverse_geometry::{JointConfiguration, Pose};
 use obverse_isa::{self as isa, op};
 use obverse_tape::record::Joints;
-use obverse_workcell::{Goal, Motion, Path};
+use obverse_workcell::{Fault, Goal, Motion, MotionEnd, Path};
 
 fn path(path: isa::Path) -> Path {
     match path {
@@ -45,8 +46,33 @@ impl Acts<'_> {
         Ok(())
     }
 
-    fn go_back(&mut self, to: &Joints, path: Path) -> Result<(), Failure> {
-        self.go(Goal::Joints(to.0), path, None)
+    /// Go back, as the settings for that say. Here a force that stops the motion is a fault: the
+    /// arm is not where it was.
+    fn go_back(
+        &mut self,
+        to: JointConfiguration,
+        path: Path,
+        limit_n: Option<f64>,
+    ) -> Result<(), Failure> {
+        let force_limit_n = match (limit_n, self.reverse_force_limit_n()) {
+            (Some(own), Some(set)) => Some(own.min(set)),
+            (own, set) => own.or(set),
+        };
+        let motion = Motion {
+            goal: Goal::Joints(to),
+            path: if self.goes_back_straight() { Path::Linear } else { path },
+            speed: self.reverse_speed()?,
+            tool: self.tool(),
+            force_limit_n,
+        };
+        let report = self.cell.execute(&motion)?;
+        self.report = Some(report);
+        match (report.end, force_limit_n) {
+            (MotionEnd::StoppedByForce, Some(limit_n)) => {
+                Err(Fault::ForceLimit { force_n: report.peak_force_n, limit_n }.into())
+            }
+            _ => Ok(()),
+        }
     }
 
     fn start(&self) -> Joints {
@@ -54,10 +80,11 @@ impl Acts<'_> {
     }
 }
 
-/// Motions: which path they take, and what their goal is, given where they started.
+/// Motions: which path they take, what their goal is, given where they started, and what force
+/// stops them, going there and going back.
 macro_rules! motions {
     ($($op:ident($this:ident, $acts:ident, $start:ident)
-        $path:expr => $goal:expr, $limit:expr;)*) => {$(
+        $path:expr => $goal:expr, $limit:expr, $limit_back:expr;)*) => {$(
         impl AfterForward<Acts<'_>> for op::$op {
             type Saved = Joints;
 
@@ -72,39 +99,41 @@ macro_rules! motions {
                 $acts.go(goal, $path, limit)
             }
 
-            fn reverse(self, acts: &mut Acts<'_>, start: &Joints) -> Result<(), Failure> {
+            fn reverse(self, $acts: &mut Acts<'_>, start: &Joints) -> Result<(), Failure> {
                 let $this = self;
                 let _ = $this;
-                acts.go_back(start, $path)
+                let limit_back = $limit_back;
+                $acts.go_back(start.0, $path, limit_back)
             }
         }
     )*};
 }
 
 motions! {
-    MoveJoint(_op, acts, start) Path::Joint => Goal::Joints(acts.joints(0)?), None;
-    MoveLinear(_op, acts, start) Path::Linear => Goal::Joints(acts.joints(0)?), None;
+    MoveJoint(_op, acts, start) Path::Joint => Goal::Joints(acts.joints(0)?), None, None;
+    MoveLinear(_op, acts, start) Path::Linear => Goal::Joints(acts.joints(0)?), None, None;
     MoveItem(op, acts, start) path(op.path) => {
         Goal::Pose(keyframe_pose(acts, op.keyframe)?)
-    }, None;
-    MoveRelative(op, acts, start) Path::Linear => Goal::Displaced {
-        from: start.0,
-        distance_m: acts.real(0),
-        axis: axis(op.axis),
-        frame: frame(op.frame),
-    }, None;
+    }, None, None;
+    MoveRelative(op, acts, start) Path::Linear => {
+        displaced(acts, start, op.axis, op.frame)
+    }, None, None;
     MoveOffset(op, acts, start) Path::Linear => Goal::Offset {
         from: start.0,
         by_m: [acts.real(0), acts.real(1), acts.real(2)],
         frame: frame(op.frame),
-    }, None;
-    MoveGuarded(op, acts, start) Path::Linear => Goal::Displaced {
-        from: start.0,
-        distance_m: acts.real(0),
-        axis: axis(op.axis),
-        frame: frame(op.frame),
-    }, Some(acts.real(1));
-    MoveSlot(op, acts, start) path(op.path) => Goal::Joints(*acts.position(op.slot)), None;
+    }, None, None;
+    MoveGuarded(op, acts, start) Path::Linear => {
+        displaced(acts, start, op.axis, op.frame)
+    }, Some(acts.real(1)), None;
+    MoveGuardedOpposite(op, acts, start) Path::Linear => {
+        displaced(acts, start, op.axis, op.frame)
+    }, Some(acts.real(1)), Some(acts.real(1));
+    MoveSlot(op, acts, start) path(op.path) => Goal::Joints(*acts.position(op.slot)), None, None;
+}
+
+fn displaced(acts: &Acts<'_>, start: &Joints, along: isa::Axis, of: isa::Frame) -> Goal {
+    Goal::Displaced { from: start.0, distance_m: acts.real(0), axis: axis(along), frame: frame(of) }
 }
 
 fn keyframe_pose(acts: &Acts<'_>, keyframe: isa::KeyframeId) -> Result<Pose, Failure> {
@@ -124,6 +153,6 @@ impl Always<Acts<'_>> for op::MoveAlways {
 
     fn reverse(self, acts: &mut Acts<'_>) -> Result<(), Failure> {
         let goal: JointConfiguration = acts.joints(0)?;
-        acts.go(Goal::Joints(goal), path(self.path), None)
+        acts.go_back(goal, path(self.path), None)
     }
 }

@@ -2,7 +2,8 @@
 
 use super::acts::Acts;
 use crate::class::{AfterForward, Failure};
-use obverse_isa::op;
+use crate::stop::TrapKind;
+use obverse_isa::{Setting, op};
 use obverse_tape::record::Word;
 
 impl AfterForward<Acts<'_>> for op::SettingSet {
@@ -13,6 +14,11 @@ impl AfterForward<Acts<'_>> for op::SettingSet {
     }
 
     fn forward(self, acts: &mut Acts<'_>, _: &Word) -> Result<(), Failure> {
+        // Written so that what is no number fails.
+        let is_force = self.setting != Setting::ReverseForceLimit || acts.real(0) > 0.0;
+        if !is_force {
+            return Err(TrapKind::NotAForceLimit.into());
+        }
         acts.settings[self.setting as usize] = acts.operand(0);
         Ok(())
     }

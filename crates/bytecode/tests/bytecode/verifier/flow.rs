@@ -1,8 +1,9 @@
 //! Rules 5, 6 and 8: joins, counted loops, blocks.
 
 use super::{LOOP, LOOP_1, accepted, module, refused, refused_among, refuses, start};
-use obverse_bytecode::verify;
 use obverse_bytecode::verify::Rule;
+use obverse_bytecode::{Variable, verify};
+use obverse_isa::Type;
 
 #[test]
 fn rule_5_jumps_and_joins_name_each_other() {
@@ -202,10 +203,26 @@ fn rule_8_nothing_jumps_into_or_out_of_a_block() {
 }
 
 #[test]
-fn rule_8_what_takes_a_blocks_place_has_no_parameters() {
-    let why = "a function that takes a block's place has no parameters";
+fn rule_8_what_takes_a_blocks_place_begins_with_the_locals_around_it() {
+    let why = "has for parameters the first locals of the function around the block";
+    // An integer and a real, where two integers are.
     refuses("block.begin\n block.replace helper, #1", Rule::Blocks, 2, why);
     refuses("checkpoint begun\n block.begin\n block.replace helper, #2", Rule::Blocks, 3, why);
+    let with_locals = |locals: &str| {
+        let mut module = start("block.begin\n block.replace helper, #1");
+        let types = locals.split_whitespace().map(|name| match name {
+            "int" => Type::Int,
+            _ => Type::Real,
+        });
+        let local = |of_type| Variable { name: format!("{of_type}"), of_type };
+        module.functions[0].locals = types.map(local).collect();
+        module
+    };
+    accepted(with_locals("int real"));
+    accepted(with_locals("int real real"));
+    refused(with_locals("int"), Rule::Blocks, Some(2), why);
+    refused(with_locals("real int"), Rule::Blocks, Some(2), why);
+    refused(with_locals(""), Rule::Blocks, Some(2), why);
 }
 
 #[test]
