@@ -4,7 +4,7 @@
 //! law sees; a failure prints the number of the program, and `LAW_SEED` runs that one alone.
 
 use arbitrary::{Result, Unstructured};
-use obverse_testkit::{laws, machine_laws};
+use obverse_testkit::{laws, machine_laws, preflight_laws};
 use std::collections::BTreeSet;
 
 /// How many modules each law sees.
@@ -61,6 +61,7 @@ laws! {
         write_ahead_with_blocks >= 60
         turns >= 12
         round_trips >= 100;
+    preflight_laws: foretells >= 60;
     laws: compiles >= 100 agrees_forward >= 95 agrees_backward >= 75;
 }
 

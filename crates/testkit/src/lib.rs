@@ -10,6 +10,7 @@ pub mod laws;
 pub mod ledger;
 pub mod logged;
 pub mod machine_laws;
+pub mod preflight_laws;
 pub mod programs;
 pub mod reference;
 
