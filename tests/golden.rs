@@ -7,6 +7,8 @@
 //!                    on a line those of the line above; asserted, never written
 //! compile/NAME.obv   its disassembly but for the source text: NAME.obvasm
 //! run/NAME.obv       what `obverse run` tells: NAME.txt, and what `obverse back`: back/NAME.txt
+//! moves/NAME.obv     what `obverse check` says of its moves, in the workcell NAME.toml: NAME.txt
+//! dry/NAME.obv       what `obverse run --dry` tells: NAME.txt
 //! asm/NAME.obvasm    what is wrong with assembly text, or with the module that it says: NAME.txt
 //! ```
 //!
@@ -53,7 +55,7 @@ fn walk() -> (Vec<Golden>, BTreeSet<String>) {
         goldens.push(Golden { source: source.to_owned(), render, kept });
     };
     let mut strays = BTreeSet::new();
-    for folder in ["diag", "compile", "run", "back", "asm"] {
+    for folder in ["diag", "compile", "run", "back", "moves", "dry", "asm"] {
         for name in names_in(folder) {
             let file = format!("{folder}/{name}");
             match (folder, name.rsplit_once('.')) {
@@ -65,6 +67,8 @@ fn walk() -> (Vec<Golden>, BTreeSet<String>) {
                     add(&file, run, format!("run/{stem}.txt"));
                     add(&file, back, format!("back/{stem}.txt"));
                 }
+                ("moves", Some((stem, "obv"))) => add(&file, moves, format!("moves/{stem}.txt")),
+                ("dry", Some((stem, "obv"))) => add(&file, dry, format!("dry/{stem}.txt")),
                 ("asm", Some((stem, "obvasm"))) => add(&file, refused, format!("asm/{stem}.txt")),
                 // Workcells.
                 (_, Some((_, "toml"))) => {}
@@ -149,6 +153,14 @@ fn run(file: &str) -> Result<String, Failed> {
 
 fn back(file: &str) -> Result<String, Failed> {
     printed(&["back", "--seed", "1", file])
+}
+
+fn moves(file: &str) -> Result<String, Failed> {
+    printed(&["check", file])
+}
+
+fn dry(file: &str) -> Result<String, Failed> {
+    printed(&["run", "--dry", "--seed", "1", file])
 }
 
 fn listed(errors: &[impl ToString]) -> String {

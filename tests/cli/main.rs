@@ -2,6 +2,7 @@
 //! it says to wrong input.
 
 mod commands;
+mod moves;
 mod support;
 mod wrong_files;
 mod wrong_input;
