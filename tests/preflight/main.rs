@@ -182,11 +182,14 @@ sequence main {
 fn a_guarded_move_is_meant_to_touch() {
     let program = "
 item part { keyframe above = [0, 0, -100] mm }
-advanced move feel { distance 80 mm down in base; stop if force > 5 N; speed slow }
+advanced move feel { distance 120 mm down in base; stop if force > 5 N; speed slow }
 sequence main { move to part.above; advance feel }";
     let found = Found::of(&with_wall(450, 150, 60), program);
     assert!(found.report.is_fine(true), "{:?}", found.report);
-    let too_far = program.replace("80 mm", "5 m");
+    let unguarded =
+        Found::of(&with_wall(450, 150, 60), &program.replace("stop if force > 5 N;", ""));
+    assert_eq!(unguarded.report.count(Grade::InCollision), 1, "{:?}", unguarded.report);
+    let too_far = program.replace("120 mm", "5 m");
     let found = Found::of(&with_wall(450, 150, 60), &too_far);
     assert_eq!(found.report.count(Grade::OutOfReach), 1, "{:?}", found.report);
 }
@@ -222,18 +225,54 @@ fn what_is_drawn_is_not_known_and_fails_only_when_asked_strictly() {
     assert!(found.report.is_fine(false) && !found.report.is_fine(true));
 }
 
+/// The probe is longer than the gripper: with it the same pose is another one of the arm.
 #[test]
-fn a_tool_by_chance_is_not_known() {
+fn a_tool_holds_to_the_end_of_its_block() {
     let program = "
 item part { keyframe above = [0, 0, -100] mm }
 sequence main {
   if input 0 { tool probe }
-  tool gripper
   move to part.above
 }";
     assert!(Found::of(CELL, program).report.is_fine(true));
-    let found = Found::of(CELL, &program.replace("  tool gripper\n", ""));
-    assert!(found.report.is_fine(true), "a setting ends with its block: {:?}", found.report);
+}
+
+/// What a call within itself leaves is not known, and neither is the tool.
+#[test]
+fn behind_calls_that_are_not_followed_the_tool_is_not_known() {
+    let program = "
+item part { keyframe above = [0, 0, -100] mm }
+sequence again { if random(0, 1) > 0.5 { call again } }
+sequence main {
+  call again
+  move to part.above
+}";
+    let found = Found::of(CELL, program);
+    assert_eq!(found.forward(0).verdict.reason, Reason::SettingNotKnown);
+}
+
+#[test]
+fn what_is_read_of_a_contact_decides_what_follows_as_planned() {
+    let program = "
+item part { keyframe above = [0, 0, -100] mm }
+error nothing_there { severity fatal }
+advanced move feel {
+  distance 120 mm down in base
+  stop if force > 5 N
+  succeeds if force > 5 N and distance < 119 mm
+  speed slow
+  on failure { throw nothing_there }
+}
+sequence main {
+  move to part.above
+  advance feel
+  move 9 mm up in base
+}";
+    // Stopped by the wall it goes on from there; where there is none, only otherwise.
+    let found = Found::of(&with_wall(450, 150, 60), program);
+    assert_eq!(found.at_line(14).verdict().reason, Reason::Fine, "{:?}", found.report);
+    let found = Found::of(CELL, &program.replace("above = [0", "above = [100"));
+    assert_eq!(found.at_line(14).verdict().reason, Reason::StartNotKnown, "{:?}", found.report);
 }
 
 #[test]

@@ -17,8 +17,8 @@ use obverse_vm::Direction;
 use std::collections::HashSet;
 use std::rc::Rc;
 
-/// The most work that is done in one check: a statement is one, and so is every [`WORDS`] of a state
-/// that is copied, which bounds the memory too.
+/// The most work that is done in one check: a statement is one, and so is every [`WORDS`] of a
+/// state that is copied, which bounds the memory too.
 const MAX_WORK: usize = 400_000;
 /// How many words of a state cost as much as a statement.
 const WORDS: usize = 16;
