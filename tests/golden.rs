@@ -9,6 +9,8 @@
 //! compile/NAME.obv   its disassembly but for the source text: NAME.obvasm
 //! run/NAME.obv       what `obverse run` tells: NAME.txt, and what `obverse back`: back/NAME.txt
 //! reach/NAME.obv     what `obverse reach` draws of it: NAME.txt; likewise of NAME.obvasm
+//! moves/NAME.obv     what `obverse check` says of its moves, in the workcell NAME.toml: NAME.txt
+//! dry/NAME.obv       what `obverse run --dry` tells: NAME.txt
 //! asm/NAME.obvasm    what is wrong with assembly text, or with the module that it says: NAME.txt
 //! ```
 //!
@@ -56,7 +58,7 @@ fn walk() -> (Vec<Golden>, BTreeSet<String>) {
         goldens.push(Golden { source: source.to_owned(), render, kept });
     };
     let mut strays = BTreeSet::new();
-    for folder in ["diag", "compile", "run", "back", "reach", "asm"] {
+    for folder in ["diag", "compile", "run", "back", "reach", "moves", "dry", "asm"] {
         for name in names_in(folder) {
             let file = format!("{folder}/{name}");
             match (folder, name.rsplit_once('.')) {
@@ -71,6 +73,8 @@ fn walk() -> (Vec<Golden>, BTreeSet<String>) {
                 ("reach", Some((stem, "obv" | "obvasm"))) => {
                     add(&file, reach, format!("reach/{stem}.txt"));
                 }
+                ("moves", Some((stem, "obv"))) => add(&file, moves, format!("moves/{stem}.txt")),
+                ("dry", Some((stem, "obv"))) => add(&file, dry, format!("dry/{stem}.txt")),
                 ("asm", Some((stem, "obvasm"))) => add(&file, refused, format!("asm/{stem}.txt")),
                 // Workcells.
                 (_, Some((_, "toml"))) => {}
@@ -161,6 +165,14 @@ fn back(file: &str) -> Result<String, Failed> {
 
 fn reach(file: &str) -> Result<String, Failed> {
     printed(&["reach", file])
+}
+
+fn moves(file: &str) -> Result<String, Failed> {
+    printed(&["check", file])
+}
+
+fn dry(file: &str) -> Result<String, Failed> {
+    printed(&["run", "--dry", "--seed", "1", file])
 }
 
 fn listed(errors: &[impl ToString]) -> String {

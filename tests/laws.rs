@@ -5,7 +5,7 @@
 //! runs that one alone.
 
 use arbitrary::{Result, Unstructured};
-use obverse_testkit::{files, laws, machine_laws, reach_laws, word_laws};
+use obverse_testkit::{files, laws, machine_laws, preflight_laws, reach_laws, word_laws};
 use std::collections::BTreeSet;
 
 /// How many modules each law sees.
@@ -70,6 +70,7 @@ laws! {
         write_ahead_with_blocks >= 60
         turns >= 12
         round_trips >= 100;
+    preflight_laws: foretells >= 60;
     laws: compiles >= 100 agrees_forward >= 95 agrees_backward >= 75;
     files: files_are_one_program >= 60;
     word_laws:

@@ -5,9 +5,11 @@
 //! [`problem`].
 
 mod commands;
+mod cycle;
 mod files;
 mod lacking;
 mod load;
+mod moves;
 mod problem;
 mod report;
 mod show;
@@ -28,20 +30,21 @@ struct Arguments {
 const EXIT_CODES: &str = "\
 Exit codes:
   0  done; for `run`, the program ended with no error pending; for `back`, the run went back
-     as far as the program lets it
-  1  the run ended otherwise: an error pending, a fault of the workcell, a trap, the limit
+     as far as the program lets it; for `check`, no move is found to fail
+  1  the run ended otherwise: an error pending, a fault of the workcell, a trap, the limit;
+     for `check`, a move fails, or the check of the moves could not be done as a whole
   2  the input is wrong (command line, source, module, tape, workcell file), and nothing was run;
      or the output cannot be written. With `--json` the last line on standard output is then
      a summary with the outcome `refused`, and the messages";
 
 #[derive(Subcommand)]
 enum Command {
-    /// Check a program and say what is wrong with it.
+    /// Check a program, and every move of it in its workcell, before anything moves.
     Check(commands::check::Arguments),
     /// Compile a program to a module.
     Build(commands::build::Arguments),
     /// Run a program on the simulated workcell and tell what happens.
-    Run(commands::run::Arguments),
+    Run(commands::run::RunArguments),
     /// Run a program, then take it back as far as it goes.
     Back(commands::back::Arguments),
     /// Show how far back each line of a program can go, and what stops it.
@@ -52,7 +55,7 @@ enum Command {
     Tape(commands::tape::Arguments),
     /// Show the instruction set.
     Isa(commands::isa::Arguments),
-    /// Explain an opcode or the code of a diagnostic.
+    /// Explain an opcode, the code of a diagnostic, or that of a check of moves.
     Explain(commands::explain::Arguments),
 }
 
@@ -61,7 +64,8 @@ impl Command {
     fn is_json(&self) -> bool {
         match self {
             Self::Build(arguments) => arguments.json,
-            Self::Run(arguments) | Self::Back(arguments) => arguments.json,
+            Self::Run(arguments) => arguments.common.json,
+            Self::Back(arguments) => arguments.json,
             Self::Dis(arguments) => arguments.json,
             Self::Reach(arguments) => arguments.json,
             Self::Tape(arguments) => arguments.json,

@@ -102,7 +102,7 @@ fn heading(module: &Module, event: &Event, cell: &dyn Workcell) -> Option<Told> 
 /// What an instruction did, if it is worth telling.
 fn act(module: &Module, event: &Event, cell: &dyn Workcell) -> Option<Told> {
     let outcome = outcome_of(module, event, cell)?;
-    let text = text_of(module, event);
+    let text = text_of(module, event.pc, event.instr);
     Some(Told {
         time_s: cell.now_s(),
         direction: event.direction,
@@ -159,9 +159,9 @@ pub(crate) fn said(module: &Module, pc: u32) -> String {
 
 /// What the program says at an event, or what it means there: the moves around an advanced move
 /// are all written in one clause.
-fn text_of(module: &Module, event: &Event) -> String {
-    let kind = module.function_at(event.pc).map(|index| module.functions[index].kind);
-    match event.instr {
+pub(crate) fn text_of(module: &Module, pc: u32, instr: Instr) -> String {
+    let kind = module.function_at(pc).map(|index| module.functions[index].kind);
+    match instr {
         Instr::MoveSlot { .. } if kind == Some(FunctionKind::AdvancedMove) => {
             "return to initial position".to_owned()
         }
@@ -171,10 +171,10 @@ fn text_of(module: &Module, event: &Event) -> String {
         Instr::ErrorClear { error } => {
             format!("error {}", module.errors[error.index()].name)
         }
-        Instr::Irreversible { .. } if is_end(module, event.pc) => {
+        Instr::Irreversible { .. } if is_end(module, pc) => {
             "end of what is irreversible".to_owned()
         }
-        _ => said(module, event.pc),
+        _ => said(module, pc),
     }
 }
 

@@ -3,6 +3,7 @@
 
 mod commands;
 mod imports;
+mod moves;
 mod support;
 mod wrong_files;
 mod wrong_input;

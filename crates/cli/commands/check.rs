@@ -1,23 +1,50 @@
-//! `obverse check`: say what is wrong with a program, and whether its workcell has what it needs.
+//! `obverse check`: say what is wrong with a program, whether its workcell has what it needs, and
+//! what can be said of each move before anything moves.
 
 use super::Result;
 use crate::load::{self, Program};
 use crate::problem::Problem;
-use crate::{Outcome, show, write};
+use crate::{Outcome, moves, show, write};
+use obverse_preflight::Report;
 use obverse_syntax::diagnostic::{Diagnostic, Severity};
 use serde_json::json;
 use std::path::PathBuf;
 
 #[derive(clap::Args)]
+#[command(after_help = GRADES)]
 pub(crate) struct Arguments {
     /// The program: source, assembly text or module.
     file: PathBuf,
     /// The workcell file, in place of the one that the program names.
     #[arg(long, value_name = "FILE")]
     cell: Option<PathBuf>,
-    /// For machines: JSON Lines, an object a diagnostic and a summary last.
+    /// Let a move that is not known before running fail the check, too.
+    #[arg(long)]
+    strict: bool,
+    /// For machines: JSON Lines, an object a diagnostic and one a move, a summary last.
     #[arg(long)]
     json: bool,
+}
+
+const GRADES: &str = "\
+Each move is graded, forward and in reverse, with everything at the place that the workcell file
+gives it, and the arm, the tool and the held item followed all along the path:
+  reachable                                fine
+  not known before running                 it depends on a reading, a draw, or a contact; exit code
+                                           1 with `--strict` alone
+  reachable only in another configuration  exit code 1, as for all that follow: a run would end
+  out of limits                            there with a fault
+  out of reach
+  in collision
+A guarded move is meant to touch: its contact is no collision. Where ways through the program are
+left unlooked at, since there are too many, the exit code is 1 whatever was found. `obverse explain
+P0501` explains the code of a reason.";
+
+/// A program that can run in its workcell, and what was found of its moves.
+struct Checked {
+    program: Program,
+    cell_name: String,
+    report: Report,
 }
 
 pub(crate) fn run(arguments: &Arguments) -> Result {
@@ -25,24 +52,37 @@ pub(crate) fn run(arguments: &Arguments) -> Result {
         return as_json(arguments);
     }
     let program = load::program(&arguments.file)?;
-    let cell = in_its_cell(arguments, &program)?;
-    let module = program.verified.module();
-    let warnings = show::counted(warnings_of(&program));
+    let checked = in_its_cell(arguments, program)?;
+    let module = checked.program.verified.module();
+    let warnings = show::counted(warnings_of(&checked.program));
     let warnings = if warnings.is_empty() { "no warnings" } else { &warnings };
     write::line(&format!(
-        "{}: correct, {warnings}; {} functions, {} instructions; workcell: {cell}",
+        "{}: correct, {warnings}; {} functions, {} instructions; workcell: {}",
         arguments.file.display(),
         module.functions.len(),
         module.code.len(),
+        checked.cell_name,
     ));
-    Ok(Outcome::Done)
+    moves::tell(module, &checked.report);
+    Ok(outcome(arguments, &checked.report))
 }
 
-/// Whether the program can run in its workcell; what that is called.
-fn in_its_cell(arguments: &Arguments, program: &Program) -> std::result::Result<String, Problem> {
-    let (cell, file) = load::workcell(program, arguments.cell.as_deref(), 0)?;
-    load::machine(program, &cell, &file)?;
-    Ok(file.name)
+fn outcome(arguments: &Arguments, report: &Report) -> Outcome {
+    match report.is_fine(arguments.strict) {
+        true => Outcome::Done,
+        false => Outcome::EndedOtherwise,
+    }
+}
+
+/// Whether the program can run in its workcell, and what its moves come to there.
+fn in_its_cell(arguments: &Arguments, program: Program) -> std::result::Result<Checked, Problem> {
+    let (cell, file) = load::workcell(&program, arguments.cell.as_deref(), 0)?;
+    // Says what is missing, with its place.
+    load::machine(&program, &cell, &file)?;
+    let report = obverse_preflight::check(&program.verified, cell.cell()).map_err(|errors| {
+        Problem::new(errors.iter().map(ToString::to_string).collect::<Vec<_>>().join("; "))
+    })?;
+    Ok(Checked { program, cell_name: file.name, report })
 }
 
 fn warnings_of(program: &Program) -> &[Diagnostic] {
@@ -60,10 +100,19 @@ fn as_json(arguments: &Arguments) -> Result {
         summary["functions"] = json!(module.functions.len());
         summary["instructions"] = json!(module.code.len());
         warnings = warnings_of(&program).len();
-        in_its_cell(arguments, &program)
+        in_its_cell(arguments, program)
     });
-    match &checked {
-        Ok(cell) => summary["workcell"] = json!(cell),
+    let (words, outcome) = match &checked {
+        Ok(checked) => {
+            moves::tell_machines(checked.program.verified.module(), &checked.report);
+            summary["workcell"] = json!(checked.cell_name);
+            summary["moves"] = moves::counts_for_machines(&checked.report);
+            summary["complete"] = json!(checked.report.is_complete);
+            match outcome(arguments, &checked.report) {
+                Outcome::Done => ("correct", Outcome::Done),
+                otherwise => ("moves_fail", otherwise),
+            }
+        }
         Err(problem) => {
             let all = show::problem_json(problem);
             all.iter().for_each(|one| write::line(&one.to_string()));
@@ -72,11 +121,12 @@ fn as_json(arguments: &Arguments) -> Result {
                 warnings += show::count(&diagnosed.diagnostics, Severity::Warning);
             }
             errors += problem.messages.len();
+            ("wrong", Outcome::Wrong)
         }
-    }
-    summary["outcome"] = json!(if checked.is_ok() { "correct" } else { "wrong" });
+    };
+    summary["outcome"] = json!(words);
     summary["errors"] = json!(errors);
     summary["warnings"] = json!(warnings);
     write::line(&summary.to_string());
-    Ok(if checked.is_ok() { Outcome::Done } else { Outcome::Wrong })
+    Ok(outcome)
 }

@@ -1,9 +1,10 @@
-//! `obverse explain`: explain an opcode or the code of a diagnostic.
+//! `obverse explain`: explain an opcode, the code of a diagnostic, or that of a check of moves.
 
 use super::Result;
 use crate::problem::Problem;
 use crate::{Outcome, write};
 use obverse_isa::{OPS, Opcode, reference};
+use obverse_preflight::Reason;
 use obverse_syntax::codes::Code;
 
 /// How wide prose is set.
@@ -11,7 +12,7 @@ const COLUMNS: usize = 80;
 
 #[derive(clap::Args)]
 pub(crate) struct Arguments {
-    /// A mnemonic such as `move.joint`, or a code such as `E0201`.
+    /// A mnemonic such as `move.joint`, or a code such as `E0201` or `P0501`.
     word: String,
 }
 
@@ -25,14 +26,22 @@ pub(crate) fn run(arguments: &Arguments) -> Result {
         write::out(&set(code.explanation()));
         return Ok(Outcome::Done);
     }
-    let words =
-        OPS.iter().map(|row| row.mnemonic).chain(Code::ALL.iter().map(|code| code.as_str()));
+    if let Ok(reason) = word.parse::<Reason>() {
+        write::out(&set(reason.explanation()));
+        return Ok(Outcome::Done);
+    }
+    let codes = Code::ALL.iter().map(|code| code.as_str());
+    let reasons = Reason::ALL.iter().map(|reason| reason.code());
+    let words = OPS.iter().map(|row| row.mnemonic).chain(codes).chain(reasons);
     let near = obverse_syntax::nearest(word, words);
     let hint = near.map_or_else(
-        || "`obverse isa` lists the opcodes, and diagnostics show their codes".to_owned(),
+        || {
+            "`obverse isa` lists the opcodes, and diagnostics and checks show their codes"
+                .to_owned()
+        },
         |near| format!("did you mean `{near}`?"),
     );
-    Err(Problem::new(format!("`{word}` is neither an opcode nor the code of a diagnostic; {hint}")))
+    Err(Problem::new(format!("`{word}` is neither an opcode nor a code; {hint}")))
 }
 
 /// The lines of a text, broken between words where they are too long.

@@ -4,6 +4,7 @@ pub(crate) mod back;
 pub(crate) mod build;
 pub(crate) mod check;
 pub(crate) mod dis;
+mod dry;
 pub(crate) mod explain;
 pub(crate) mod isa;
 pub(crate) mod reach;

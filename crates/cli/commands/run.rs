@@ -1,6 +1,6 @@
 //! `obverse run`: run a program on the simulated workcell and tell what happens.
 
-use super::Result;
+use super::{Result, dry};
 use crate::load::{self, Program, Workcell};
 use crate::problem::Problem;
 use crate::report::{self, Report};
@@ -35,7 +35,22 @@ pub(crate) struct Arguments {
     pub(crate) json: bool,
 }
 
-pub(crate) fn run(arguments: &Arguments) -> Result {
+/// What `run` alone understands.
+#[derive(clap::Args)]
+pub(crate) struct RunArguments {
+    #[command(flatten)]
+    pub(crate) common: Arguments,
+    /// Tell how long it takes, by sequence and by action, and not what happens: everything is at
+    /// the place that the workcell file gives it, and nothing is noisy.
+    #[arg(long, conflicts_with = "tape")]
+    dry: bool,
+}
+
+pub(crate) fn run(arguments: &RunArguments) -> Result {
+    if arguments.dry {
+        return dry::run(&arguments.common);
+    }
+    let arguments = &arguments.common;
     let program = load::program(&arguments.file)?;
     let (mut cell, file) = workcell(arguments, &program)?;
     let mut machine = load::machine(&program, &cell, &file)?;

@@ -104,6 +104,24 @@ impl Inventory {
         self.items.len()
     }
 
+    /// There are no items any more.
+    pub(crate) fn clear(&mut self) {
+        self.items.clear();
+        self.held = None;
+    }
+
+    /// What is held and how, and where everything else lies, as numbers.
+    pub(crate) fn each_number(&self, sink: &mut dyn FnMut(u64)) {
+        let mut pose = |pose: &Pose| {
+            pose.rotation.iter().chain(pose.translation_m.iter()).for_each(|x| sink(x.to_bits()));
+        };
+        self.lying().for_each(|(_, lies)| pose(lies));
+        if let Some((index, in_mount)) = self.held_in_mount() {
+            pose(&in_mount);
+            sink(index as u64);
+        }
+    }
+
     /// Close the gripper: take the item that was let go right here, else the one whose grasp is
     /// nearest to the tool centre point and near enough.
     pub(crate) fn close(

@@ -21,6 +21,7 @@ pub mod kinematics;
 mod limits;
 mod line;
 pub mod peg;
+pub mod plan;
 pub mod profile;
 pub mod random;
 mod reader;
@@ -34,4 +35,5 @@ mod world;
 
 pub use cell::{Cell, CellError, CellPlaces};
 pub use faults::FaultPlan;
+pub use plan::Plan;
 pub use sim::Sim;

@@ -11,6 +11,7 @@ pub mod laws;
 pub mod ledger;
 pub mod logged;
 pub mod machine_laws;
+pub mod preflight_laws;
 pub mod programs;
 pub mod reach_laws;
 pub mod reference;

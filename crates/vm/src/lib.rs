@@ -14,11 +14,13 @@
 //! when going back is wise.
 
 pub mod class;
+pub mod convert;
 mod hot;
 pub mod link;
 pub mod machine;
 pub mod observe;
 mod ops;
+pub mod pure;
 mod snapshot;
 pub mod state;
 mod step;
@@ -30,6 +32,7 @@ mod written;
 pub use link::{LinkError, Links};
 pub use machine::{Limits, Machine, Mark};
 pub use observe::{Event, Observer};
+pub use pure::Calculator;
 pub use snapshot::SnapshotError;
 pub use state::{Direction, Frame, Pending, State};
 pub use stop::{Refusal, Stop, Trap, TrapKind};

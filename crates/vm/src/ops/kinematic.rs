@@ -7,37 +7,12 @@
 
 use super::acts::Acts;
 use crate::class::{AfterForward, Always, Failure};
+use crate::convert::{axis, frame, path};
 use crate::stop::TrapKind;
 use obverse_geometry::{JointConfiguration, Pose};
 use obverse_isa::{self as isa, op};
 use obverse_tape::record::Joints;
 use obverse_workcell::{Fault, Goal, Motion, MotionEnd, Path};
-
-fn path(path: isa::Path) -> Path {
-    match path {
-        isa::Path::Joint => Path::Joint,
-        isa::Path::Linear => Path::Linear,
-    }
-}
-
-fn frame(frame: isa::Frame) -> obverse_geometry::Frame {
-    match frame {
-        isa::Frame::Tcp => obverse_geometry::Frame::Tcp,
-        isa::Frame::ToolMount => obverse_geometry::Frame::ToolMount,
-        isa::Frame::Base => obverse_geometry::Frame::Base,
-    }
-}
-
-fn axis(axis: isa::Axis) -> obverse_geometry::Axis {
-    match axis {
-        isa::Axis::PlusX => obverse_geometry::Axis::PlusX,
-        isa::Axis::MinusX => obverse_geometry::Axis::MinusX,
-        isa::Axis::PlusY => obverse_geometry::Axis::PlusY,
-        isa::Axis::MinusY => obverse_geometry::Axis::MinusY,
-        isa::Axis::PlusZ => obverse_geometry::Axis::PlusZ,
-        isa::Axis::MinusZ => obverse_geometry::Axis::MinusZ,
-    }
-}
 
 impl Acts<'_> {
     fn go(&mut self, goal: Goal, path: Path, force_limit_n: Option<f64>) -> Result<(), Failure> {

@@ -1,0 +1,215 @@
+//! `obverse run --dry`: how long a program takes, by sequence and by action, without a picture of
+//! what happens.
+
+use super::{Result, run};
+use crate::cycle::{Cycle, Reading, Times};
+use crate::{Outcome, load, report, story, write};
+use obverse_bytecode::Module;
+use obverse_recovery::{Ending, drive};
+use obverse_sim::Sim;
+use obverse_vm::{Direction, Limits};
+use obverse_workcell::Clock;
+use serde_json::{Map, Value, json};
+
+/// How wide the column of what the program says is.
+const TEXT_COLUMNS: usize = 38;
+/// How wide the longest bar is.
+const BAR_COLUMNS: usize = 12;
+/// Of more actions than these, those that take longest are told.
+const ACTIONS_MAX: usize = 40;
+
+/// What a dry run does not show.
+const NOT_SHOWN: [&str; 3] = [
+    "everything is at the place that the workcell file gives it, and the force sensor is not noisy",
+    "inputs follow the rules of the workcell, random numbers the seed: others may lead elsewhere",
+    "a guarded move stops where it touches now; in another contact it takes another time, or fails",
+];
+
+/// A line of a table: its name, the line it is written in, and its times.
+struct Row {
+    name: String,
+    line: Option<usize>,
+    times: Times,
+}
+
+pub(super) fn run(arguments: &run::Arguments) -> Result {
+    let program = load::program(&arguments.file)?;
+    let (cell, file) = run::workcell(arguments, &program)?;
+    let mut cell = Sim::new(&cell.cell().nominal(), arguments.seed);
+    let mut machine = load::machine(&program, &cell, &file)?.without_tape();
+    run::head(arguments, &file.name);
+    let module = program.verified.module();
+    let mut cycle = Cycle::new(module);
+    let limits = Limits::instructions(arguments.limit);
+    let ending = drive(&mut machine, Direction::Forward, limits, &mut cell, &mut cycle);
+    cycle.end(cell.now_s());
+    match arguments.json {
+        true => tell_machines(module, &cycle, &ending, cell.now_s()),
+        false => tell(module, &cycle, &ending, cell.now_s()),
+    }
+    Ok(if ending == Ending::Finished { Outcome::Done } else { Outcome::EndedOtherwise })
+}
+
+/// The longest first.
+fn sorted(mut rows: Vec<Row>) -> Vec<Row> {
+    rows.sort_by(|a, b| b.times.total_s.total_cmp(&a.times.total_s));
+    rows
+}
+
+fn sequences(module: &Module, cycle: &Cycle<'_>) -> Vec<Row> {
+    let row = |(&index, times): (&usize, &Times)| {
+        let function = &module.functions[index];
+        let line = module.place_of(function.first).map(|(_, line, _)| line);
+        Row { name: function.name.clone(), line, times: *times }
+    };
+    sorted(cycle.sequences.iter().map(row).collect())
+}
+
+fn actions(module: &Module, cycle: &Cycle<'_>) -> Vec<Row> {
+    let row = |(&pc, times): (&u32, &Times)| {
+        let line = module.place_of(pc).map(|(_, line, _)| line);
+        Row { name: story::said(module, pc), line, times: *times }
+    };
+    sorted(cycle.actions.iter().map(row).collect())
+}
+
+fn tell(module: &Module, cycle: &Cycle<'_>, ending: &Ending, total_s: f64) {
+    write::line(&format!("{}; a cycle takes {total_s:.2} s", report::ending_words(module, ending)));
+    table("sequence", &sequences(module, cycle), total_s);
+    let mut actions = actions(module, cycle);
+    let left_out = actions.split_off(actions.len().min(ACTIONS_MAX));
+    table("action", &actions, total_s);
+    if !left_out.is_empty() {
+        let rest_s: f64 = left_out.iter().map(|row| row.times.total_s).sum();
+        write::line(&format!("        and {} more, {rest_s:.2} s together", left_out.len()));
+    }
+    let readings = readings(module, cycle);
+    if !readings.is_empty() {
+        write::line("\n  line  what was read on the way");
+        for (line, what) in readings {
+            let line = line.map_or_else(String::new, |line| line.to_string());
+            write::line(&format!("{line:>6}  {what}"));
+        }
+    }
+    let (guarded, stopped) = cycle.guarded;
+    if guarded > 0 {
+        write::line(&format!("\n{guarded} guarded moves, {stopped} of them stopped by contact"));
+    }
+    write::line("\nwhat a dry run does not show:");
+    NOT_SHOWN.iter().for_each(|what| write::line(&format!("- {what}")));
+}
+
+fn table(what: &str, rows: &[Row], total_s: f64) {
+    if rows.is_empty() {
+        return;
+    }
+    write::line(&format!(
+        "\n  line  {what:<TEXT_COLUMNS$} times total s  share least s  mean s  most s"
+    ));
+    for row in rows {
+        let times = &row.times;
+        let share = share(times, total_s);
+        let line = row.line.map_or_else(String::new, |line| line.to_string());
+        let name: String = row.name.chars().take(TEXT_COLUMNS).collect();
+        let (least, mean, most) = (times.least_s, times.mean_s(), times.most_s);
+        let bar = "#".repeat((share * BAR_COLUMNS as f64).round().clamp(0.0, 99.0) as usize);
+        let text = format!(
+            "{line:>6}  {name:<TEXT_COLUMNS$} {:>5} {:>7.2} {:>4.0} % {least:>7.2} {mean:>7.2} \
+             {most:>7.2}  {bar}",
+            times.count,
+            times.total_s,
+            share * 1e2,
+        );
+        write::line(text.trim_end());
+    }
+}
+
+/// The part of the whole cycle; of a sequence that calls itself, more than that.
+fn share(times: &Times, total_s: f64) -> f64 {
+    if total_s > 0.0 { times.total_s / total_s } else { 0.0 }
+}
+
+/// What was read, by line, in words.
+fn readings(module: &Module, cycle: &Cycle<'_>) -> Vec<(Option<usize>, String)> {
+    let told = |(&pc, readings): (&u32, &Vec<Reading>)| {
+        (module.place_of(pc).map(|(_, line, _)| line), in_words(readings))
+    };
+    cycle.readings.iter().map(told).collect()
+}
+
+fn in_words(readings: &[Reading]) -> String {
+    let times =
+        |count: usize| if count == 1 { "once".to_owned() } else { format!("{count} times") };
+    let yes = |is_it: fn(&Reading) -> bool| readings.iter().filter(|one| is_it(one)).count();
+    let both = |name: String, yes: usize, words: [&str; 2]| {
+        let counts = [(yes, words[0]), (readings.len() - yes, words[1])];
+        let told = counts.iter().filter(|(count, _)| *count > 0);
+        let told: Vec<String> =
+            told.map(|(count, word)| format!("{word} {}", times(*count))).collect();
+        format!("{name}{}", told.join(", "))
+    };
+    let range = |name: &str, unit: &str, numbers: Vec<f64>| {
+        let least = numbers.iter().copied().fold(f64::INFINITY, f64::min);
+        let most = numbers.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+        let count = times(numbers.len());
+        format!("{name} {count}, {least:.1} to {most:.1} {unit}")
+    };
+    let numbers = || {
+        let number = |reading: &Reading| match reading {
+            Reading::Distance(distance_m) => Some(distance_m * 1e3),
+            Reading::Force(force_n) => Some(*force_n),
+            Reading::Input { .. } | Reading::Holding(_) | Reading::Drawn => None,
+        };
+        readings.iter().filter_map(number).collect()
+    };
+    match readings.first() {
+        Some(Reading::Input { bit, .. }) => {
+            let high = yes(|reading| matches!(reading, Reading::Input { is_high: true, .. }));
+            both(format!("input {bit}: "), high, ["high", "low"])
+        }
+        Some(Reading::Holding(_)) => {
+            let held = yes(|reading| matches!(reading, Reading::Holding(true)));
+            both("the gripper: ".to_owned(), held, ["holds something", "holds nothing"])
+        }
+        Some(Reading::Distance(_)) => range("distance:", "mm", numbers()),
+        Some(Reading::Force(_)) => range("force:", "N", numbers()),
+        Some(Reading::Drawn) => format!("a random number: {}", times(readings.len())),
+        None => String::new(),
+    }
+}
+
+fn tell_machines(module: &Module, cycle: &Cycle<'_>, ending: &Ending, total_s: f64) {
+    let objects = |kind: &str, rows: Vec<Row>| -> Vec<Value> {
+        let object = |row: &Row| {
+            json!({
+                "type": kind,
+                "line": row.line,
+                "text": row.name,
+                "count": row.times.count,
+                "total_s": row.times.total_s,
+                "share": share(&row.times, total_s),
+                "least_s": row.times.least_s,
+                "mean_s": row.times.mean_s(),
+                "most_s": row.times.most_s,
+            })
+        };
+        rows.iter().map(object).collect()
+    };
+    let reading = |(line, what): (Option<usize>, String)| {
+        let kind = "reading";
+        json!({ "type": kind, "line": line, "text": what })
+    };
+    let sequences = objects("sequence", sequences(module, cycle));
+    let actions = objects("action", actions(module, cycle));
+    let readings = readings(module, cycle).into_iter().map(reading);
+    let all = sequences.into_iter().chain(actions).chain(readings);
+    all.for_each(|object| write::line(&object.to_string()));
+    let mut more = Map::new();
+    more.insert("message".to_owned(), json!(report::ending_words(module, ending)));
+    more.insert("stopped_at".to_owned(), report::place(module, report::ending_pc(ending)));
+    more.insert("time_s".to_owned(), json!(total_s));
+    more.insert("guarded_moves".to_owned(), json!(cycle.guarded.0));
+    more.insert("stopped_by_contact".to_owned(), json!(cycle.guarded.1));
+    more.insert("not_shown".to_owned(), json!(NOT_SHOWN));
+    report::summary(ending.code(), Map::new(), more);
+}

@@ -1,0 +1,144 @@
+//! Where the time of a run goes: counted as it happens, by sequence and by action, with what the
+//! ways taken depended on.
+//!
+//! Knows no words and no columns: those are in `commands/dry.rs`.
+
+use obverse_bytecode::Module;
+use obverse_isa::{Family, Instr};
+use obverse_vm::{Direction, Event, Observer};
+use obverse_workcell::Workcell;
+use std::collections::BTreeMap;
+
+/// Times of one thing that was done, in seconds.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct Times {
+    pub(crate) count: u64,
+    pub(crate) total_s: f64,
+    pub(crate) least_s: f64,
+    pub(crate) most_s: f64,
+}
+
+impl Times {
+    fn add(&mut self, time_s: f64) {
+        self.least_s = if self.count == 0 { time_s } else { self.least_s.min(time_s) };
+        self.most_s = self.most_s.max(time_s);
+        self.total_s += time_s;
+        self.count += 1;
+    }
+
+    pub(crate) fn mean_s(&self) -> f64 {
+        self.total_s / self.count.max(1) as f64
+    }
+}
+
+/// What a reading came to.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) enum Reading {
+    /// An input; the level that was waited for, or that it had.
+    Input { bit: u16, is_high: bool },
+    /// Whether something is held.
+    Holding(bool),
+    /// How far the last motion came, in metres.
+    Distance(f64),
+    /// A force, in newtons.
+    Force(f64),
+    /// A random number.
+    Drawn,
+}
+
+/// Counts the time of a run.
+pub(crate) struct Cycle<'m> {
+    module: &'m Module,
+    /// The calls under way, and when they began.
+    calls: Vec<(usize, f64)>,
+    last_s: f64,
+    /// By function.
+    pub(crate) sequences: BTreeMap<usize, Times>,
+    /// By the first instruction of what was written there.
+    pub(crate) actions: BTreeMap<u32, Times>,
+    /// By instruction.
+    pub(crate) readings: BTreeMap<u32, Vec<Reading>>,
+    /// The guarded moves, and whether contact stopped them.
+    pub(crate) guarded: (u64, u64),
+}
+
+/// No more readings of one place are kept.
+const MAX_READINGS: usize = 1_000;
+
+impl<'m> Cycle<'m> {
+    pub(crate) fn new(module: &'m Module) -> Self {
+        Self {
+            module,
+            calls: Vec::new(),
+            last_s: 0.0,
+            sequences: BTreeMap::new(),
+            actions: BTreeMap::new(),
+            readings: BTreeMap::new(),
+            guarded: (0, 0),
+        }
+    }
+
+    /// The run is over: calls that did not end take until now.
+    pub(crate) fn end(&mut self, now_s: f64) {
+        while let Some((function, began_s)) = self.calls.pop() {
+            self.sequences.entry(function).or_default().add(now_s - began_s);
+        }
+    }
+
+    fn read(&mut self, pc: u32, reading: Reading) {
+        let readings = self.readings.entry(pc).or_default();
+        if readings.len() < MAX_READINGS {
+            readings.push(reading);
+        }
+    }
+}
+
+fn reading(instr: Instr, cell: &dyn Workcell) -> Option<Reading> {
+    Some(match instr {
+        Instr::SenseInput { bit, .. } | Instr::WaitInput { bit, .. } => {
+            Reading::Input { bit: bit.0, is_high: cell.input(bit.0) == Ok(true) }
+        }
+        Instr::SenseHolding { .. } => Reading::Holding(cell.held().is_some()),
+        Instr::SenseDistance { .. } => Reading::Distance(cell.last_motion().distance_m),
+        Instr::SensePeakForce { .. } => Reading::Force(cell.last_motion().peak_force_n),
+        Instr::SenseForce { .. } => Reading::Force(cell.force_n()),
+        Instr::Draw { .. } => Reading::Drawn,
+        _ => return None,
+    })
+}
+
+impl Observer for Cycle<'_> {
+    fn on_event(&mut self, event: &Event, cell: &dyn Workcell) {
+        if event.direction == Direction::Reverse {
+            return;
+        }
+        let now_s = cell.now_s();
+        let took_s = now_s - self.last_s;
+        self.last_s = now_s;
+        match event.instr {
+            Instr::Call { function, .. } => self.calls.push((function.index(), now_s)),
+            Instr::Return {} => {
+                if let Some((function, began_s)) = self.calls.pop() {
+                    self.sequences.entry(function).or_default().add(now_s - began_s);
+                }
+            }
+            instr => {
+                let is_act = matches!(instr.info().family, Family::Kinematic | Family::Io);
+                if is_act || took_s > 0.0 {
+                    let entry = self.module.source_at(event.pc);
+                    let place = entry.map_or(event.pc, |entry| entry.first);
+                    self.actions.entry(place).or_default().add(took_s);
+                }
+                if let Some(reading) = reading(instr, cell) {
+                    self.read(event.pc, reading);
+                }
+                if let (Instr::MoveGuarded { .. }, Some(report)) = (instr, event.report) {
+                    use obverse_workcell::MotionEnd;
+                    let is_stopped = report.end == MotionEnd::StoppedByForce;
+                    self.guarded.0 += 1;
+                    self.guarded.1 += u64::from(is_stopped);
+                }
+            }
+        }
+    }
+}

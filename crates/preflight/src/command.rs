@@ -1,0 +1,80 @@
+//! A motion as far as it is known: what a workcell in thought is asked about.
+
+use obverse_geometry::{Axis, Frame, JointConfiguration, Pose};
+use obverse_workcell::{Goal, Motion, Path, Speed, ToolId};
+
+/// Where a motion leads, as far as that is known.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) enum Aim {
+    Joints(JointConfiguration),
+    Pose(Pose),
+    /// From where the arm stands.
+    Displaced {
+        distance_m: f64,
+        axis: Axis,
+        frame: Frame,
+    },
+    /// From where the arm stands.
+    Offset {
+        by_m: [f64; 3],
+        frame: Frame,
+    },
+    NotKnown,
+}
+
+/// A motion as far as it is known.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Command {
+    pub(crate) aim: Aim,
+    pub(crate) path: Path,
+    pub(crate) tool: Option<ToolId>,
+    pub(crate) speed: Option<Speed>,
+    pub(crate) force_limit_n: Option<f64>,
+}
+
+impl Command {
+    /// The motion, from where the arm stands; none if part of it is not known.
+    pub(crate) fn motion(&self, from: JointConfiguration) -> Option<Motion> {
+        let goal = match self.aim {
+            Aim::Joints(joints) => Goal::Joints(joints),
+            Aim::Pose(pose) => Goal::Pose(pose),
+            Aim::Displaced { distance_m, axis, frame } => {
+                Goal::Displaced { from, distance_m, axis, frame }
+            }
+            Aim::Offset { by_m, frame } => Goal::Offset { from, by_m, frame },
+            Aim::NotKnown => return None,
+        };
+        let (speed, tool) = (self.speed?, self.tool?);
+        Some(Motion { goal, path: self.path, speed, tool, force_limit_n: self.force_limit_n })
+    }
+
+    /// All of it as numbers: two commands with the same numbers are the same.
+    pub(crate) fn numbers(&self) -> Vec<u64> {
+        let mut numbers = vec![
+            u64::from(self.path == Path::Linear),
+            self.tool.map_or(u64::MAX, |tool| u64::from(tool.0)),
+            self.speed.map_or(u64::MAX, |speed| speed as u64),
+            self.force_limit_n.map_or(u64::MAX, f64::to_bits),
+        ];
+        match &self.aim {
+            Aim::Joints(joints) => {
+                numbers.push(0);
+                numbers.extend(joints.bits());
+            }
+            Aim::Pose(pose) => {
+                numbers.push(1);
+                let all = pose.rotation.iter().chain(pose.translation_m.iter());
+                numbers.extend(all.map(|x| x.to_bits()));
+            }
+            Aim::Displaced { distance_m, axis, frame } => {
+                numbers.extend([2, distance_m.to_bits(), *axis as u64, *frame as u64]);
+            }
+            Aim::Offset { by_m, frame } => {
+                numbers.extend([3, *frame as u64]);
+                numbers.extend(by_m.map(f64::to_bits));
+            }
+            Aim::NotKnown => numbers.push(4),
+        }
+        numbers
+    }
+}

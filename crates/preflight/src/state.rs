@@ -1,0 +1,176 @@
+//! What is known of a run at a place of the program.
+//!
+//! A word is known or not; the workcell is one of those that [`Worlds`](crate::worlds) keeps. A
+//! state stands for every run whose values are those that it knows.
+
+use crate::trace::NodeId;
+use crate::worlds::WorldId;
+use obverse_bytecode::Function;
+use obverse_geometry::JointConfiguration;
+use obverse_isa::{ErrorId, Setting};
+
+/// A value of 64 bits, if it is known.
+pub(crate) type Word = Option<u64>;
+
+/// A call under way.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Frame {
+    pub(crate) function: usize,
+    /// Where the caller goes on.
+    pub(crate) return_pc: usize,
+    pub(crate) locals: Vec<Word>,
+    /// First, last and present value of each loop counter.
+    pub(crate) counters: Vec<[Word; 3]>,
+    pub(crate) slots: Vec<Option<JointConfiguration>>,
+}
+
+/// What is known of a run.
+#[derive(Clone, Debug)]
+pub(crate) struct State {
+    pub(crate) pc: usize,
+    pub(crate) frames: Vec<Frame>,
+    pub(crate) globals: Vec<Word>,
+    pub(crate) settings: [Word; Setting::ALL.len()],
+    /// The errors that are pending, oldest first.
+    pub(crate) raised: Option<Vec<ErrorId>>,
+    pub(crate) world: WorldId,
+    /// What the last motion reported, in metres and in newtons.
+    pub(crate) distance: Word,
+    pub(crate) peak_force: Word,
+    /// Whether everything so far went as it does where all is at the place that the file gives.
+    pub(crate) is_planned: bool,
+    /// Whether every decision so far was known, so that this is the only way.
+    pub(crate) is_certain: bool,
+    /// The blocks with a reverse of their own that are open.
+    pub(crate) blocks: Vec<NodeId>,
+    /// The last thing done that a reversal comes by.
+    pub(crate) last: NodeId,
+}
+
+impl Frame {
+    pub(crate) fn new(index: usize, function: &Function, return_pc: usize) -> Self {
+        Self {
+            function: index,
+            return_pc,
+            locals: vec![Some(0); function.locals.len()],
+            counters: vec![[Some(0); 3]; usize::from(function.counters)],
+            slots: vec![Some(JointConfiguration::ZERO); function.slots.len()],
+        }
+    }
+
+    fn words(&self) -> impl Iterator<Item = &Word> {
+        self.locals.iter().chain(self.counters.iter().flatten())
+    }
+
+    fn words_mut(&mut self) -> impl Iterator<Item = &mut Word> {
+        self.locals.iter_mut().chain(self.counters.iter_mut().flatten())
+    }
+}
+
+fn covers_all<'w>(
+    all: impl Iterator<Item = &'w Word>,
+    others: impl Iterator<Item = &'w Word>,
+) -> bool {
+    all.zip(others).all(|(word, other)| word.is_none() || word == other)
+}
+
+fn same_position(a: &Option<JointConfiguration>, b: &Option<JointConfiguration>) -> bool {
+    match (a, b) {
+        (Some(a), Some(b)) => a.same_bits(b),
+        (a, b) => a.is_none() && b.is_none(),
+    }
+}
+
+impl State {
+    /// How many words it has, more or less.
+    pub(crate) fn size(&self) -> usize {
+        let frame = |frame: &Frame| {
+            frame.locals.len() + 3 * frame.counters.len() + 6 * frame.slots.len() + 8
+        };
+        self.globals.len() + self.frames.iter().map(frame).sum::<usize>()
+    }
+
+    /// Where it is, through which calls, in which blocks: only states at one place are compared.
+    pub(crate) fn place(&self) -> Vec<usize> {
+        let calls = self.frames.iter().map(|frame| frame.return_pc);
+        let blocks = self.blocks.iter().map(|block| block.index());
+        calls.chain([usize::MAX, self.pc]).chain(blocks).collect()
+    }
+
+    /// Whether every run that `other` stands for is one that this stands for; both at one place.
+    pub(crate) fn covers(&self, other: &Self, nothing_known: WorldId) -> bool {
+        let is_same_world = self.world == other.world || self.world == nothing_known;
+        let frames = || self.frames.iter().zip(&other.frames);
+        is_same_world
+            && (self.is_planned || !other.is_planned)
+            && covers_all(self.globals.iter(), other.globals.iter())
+            && covers_all(self.settings.iter(), other.settings.iter())
+            && (self.raised.is_none() || self.raised == other.raised)
+            && covers_all(
+                [self.distance, self.peak_force].iter(),
+                [other.distance, other.peak_force].iter(),
+            )
+            && frames().all(|(frame, other)| covers_all(frame.words(), other.words()))
+            && frames().all(|(frame, other)| {
+                let mut slots = frame.slots.iter().zip(&other.slots);
+                slots.all(|(slot, other)| slot.is_none() || same_position(slot, other))
+            })
+    }
+
+    /// Forget all in which `other` differs, but for the workcell.
+    pub(crate) fn forget_differences(&mut self, other: &Self) {
+        fn meet(word: &mut Word, other: &Word) {
+            if word != other {
+                *word = None;
+            }
+        }
+        self.globals.iter_mut().zip(&other.globals).for_each(|(word, other)| meet(word, other));
+        self.settings.iter_mut().zip(&other.settings).for_each(|(word, other)| meet(word, other));
+        meet(&mut self.distance, &other.distance);
+        meet(&mut self.peak_force, &other.peak_force);
+        if self.raised != other.raised {
+            self.raised = None;
+        }
+        for (frame, other) in self.frames.iter_mut().zip(&other.frames) {
+            frame.words_mut().zip(other.words()).for_each(|(word, other)| meet(word, other));
+            for (slot, other) in frame.slots.iter_mut().zip(&other.slots) {
+                if !same_position(slot, other) {
+                    *slot = None;
+                }
+            }
+        }
+        self.is_planned |= other.is_planned;
+        self.is_certain = false;
+    }
+
+    /// Forget everything that a call may change.
+    pub(crate) fn forget_effects(&mut self, nothing_known: WorldId) {
+        self.globals.fill(None);
+        self.settings = [None; Setting::ALL.len()];
+        self.raised = None;
+        self.world = nothing_known;
+        (self.distance, self.peak_force) = (None, None);
+        self.is_certain = false;
+    }
+
+    /// The innermost call.
+    pub(crate) fn frame(&self) -> &Frame {
+        match self.frames.last() {
+            Some(frame) => frame,
+            None => unreachable!("a state always has the frame that it began with"),
+        }
+    }
+
+    /// The same, to change it.
+    pub(crate) fn frame_mut(&mut self) -> &mut Frame {
+        match self.frames.last_mut() {
+            Some(frame) => frame,
+            None => unreachable!("a state always has the frame that it began with"),
+        }
+    }
+
+    /// The calls that led here, outermost first, as the instructions that make them.
+    pub(crate) fn calls(&self) -> Vec<u32> {
+        self.frames.iter().skip(1).map(|frame| frame.return_pc as u32 - 1).collect()
+    }
+}

@@ -1,0 +1,118 @@
+//! A workcell in thought: what would come of a command, asked before anything is commanded.
+//!
+//! A [`Plan`] is a [`Sim`] without chance: everything is where the workcell file says that it
+//! should be, and the force sensor has no noise. It answers by a copy of itself that does as asked,
+//! with the code that carries out real motions, so that question and act cannot differ. Knows
+//! nothing of programs.
+
+use crate::cell::{Cell, OffsetSpec};
+use crate::robot::LINK_NAMES;
+use crate::route::Route;
+use crate::sim::Sim;
+use obverse_geometry::JointConfiguration;
+use obverse_workcell::{Arm, DigitalIo, Fault, Gripper, Motion, MotionReport, Safety};
+
+/// A workcell that can be asked what would come of a command.
+#[derive(Clone, Debug)]
+pub struct Plan {
+    sim: Sim,
+}
+
+/// What of the robot something is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum BodyKind {
+    /// A link of the arm.
+    Arm,
+    /// The tool.
+    Tool,
+    /// The held item.
+    Held,
+}
+
+impl Cell {
+    /// The same cell without chance: all things where they should be, and no noise.
+    #[must_use]
+    pub fn nominal(&self) -> Self {
+        let mut cell = self.clone();
+        cell.items.iter_mut().for_each(|item| item.offset = OffsetSpec::default());
+        cell.fixtures.iter_mut().for_each(|fixture| fixture.offset = OffsetSpec::default());
+        cell.force_sensor.noise_n = 0.0;
+        cell
+    }
+}
+
+impl Plan {
+    /// A cell at its start, without chance.
+    #[must_use]
+    pub fn new(cell: &Cell) -> Self {
+        Self { sim: Sim::new(&cell.nominal(), 0) }
+    }
+
+    /// The workcell as it would be now.
+    #[must_use]
+    pub fn workcell(&self) -> &Sim {
+        &self.sim
+    }
+
+    /// What would come of a motion, and how the workcell would be left.
+    pub fn after(&self, motion: &Motion) -> (Result<MotionReport, Fault>, Self) {
+        let mut after = self.clone();
+        let outcome = after.sim.execute(motion);
+        after.sim.release();
+        (outcome, after)
+    }
+
+    /// Where a motion would end if it met nothing.
+    ///
+    /// # Errors
+    /// Why there is no way there: reach, the ranges of the joints, a command that makes no sense.
+    pub fn end_of(&self, motion: &Motion) -> Result<JointConfiguration, Fault> {
+        Route::plan(&self.sim.world.cell, &self.sim.joints, motion).map(|route| route.to)
+    }
+
+    /// The same workcell with the arm elsewhere, with what it holds, however it came there.
+    #[must_use]
+    pub fn placed_at(&self, joints: JointConfiguration) -> Self {
+        let mut placed = self.clone();
+        placed.sim.joints = joints;
+        placed.sim.force_n = 0.0;
+        placed
+    }
+
+    /// The same workcell with an output at a level, and what follows for the gripper.
+    ///
+    /// # Errors
+    /// There is no such output.
+    pub fn with_output(&self, bit: u16, level: bool) -> Result<Self, Fault> {
+        let mut set = self.clone();
+        set.sim.set_output(bit, level)?;
+        Ok(set)
+    }
+
+    /// The same workcell without any item.
+    #[must_use]
+    pub fn without_items(&self) -> Self {
+        let mut emptied = self.clone();
+        emptied.sim.items.clear();
+        emptied
+    }
+
+    /// What of the robot a fault means by a name, with such a tool.
+    #[must_use]
+    pub fn kind_of(&self, body: &str, tool: u16) -> BodyKind {
+        let cell = self.sim.cell();
+        let held = self.sim.held().and_then(|item| cell.items.get(usize::from(item.0)));
+        if cell.tools.get(usize::from(tool)).is_some_and(|tool| tool.name == body) {
+            BodyKind::Tool
+        } else if held.is_some_and(|item| item.name == body) || !LINK_NAMES.contains(&body) {
+            BodyKind::Held
+        } else {
+            BodyKind::Arm
+        }
+    }
+
+    /// What the gripper holds and how, and where every other item is, as numbers.
+    pub fn items_as_numbers(&self, sink: &mut dyn FnMut(u64)) {
+        self.sim.items.each_number(sink);
+    }
+}
