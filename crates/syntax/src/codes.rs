@@ -193,6 +193,13 @@ codes! {
         why "`a < b < c` would compare a truth value with `c`. Compare twice."
         wrong "var inside = 1 < 2 < 3"
         right "var inside = 1 < 2 and 2 < 3"
+    ForeignWord "E0030" "a word of another language"
+        why "Other robot languages have other words for the same thing. What is written here in \
+             place of one is said where it was found; the rest of its line is not read."
+        wrong "joints start = [0, -90, 90, -90, -90, 0] deg\n\
+               sequence main {\n  move to start\n  MoveL start, v100, fine, tool0;\n}"
+        right "joints start = [0, -90, 90, -90, -90, 0] deg\n\
+               sequence main {\n  move to start\n  move to start linearly\n}"
 
     // E01xx: names.
     UnknownName "E0101" "a name that nothing has"

@@ -3,13 +3,15 @@
 //! knows the text around a token, and nothing of the grammar.
 
 use crate::codes::Code;
-use crate::diagnostic::Diagnostic;
+use crate::diagnostic::{Diagnostic, Suggestion};
 use crate::foreign;
+use crate::habits::{self, Habit, Then};
 use crate::nesting::{Nesting, Refusal};
 use crate::sink::{MAX_IDLE_TOKENS, Sink, Stopped};
 use crate::span::Span;
 use crate::surroundings::Surroundings;
 use crate::token::{Token, UNITS};
+use crate::tree;
 use crate::{MAX_NESTING, MAX_OPERATORS};
 use logos::Logos;
 
@@ -24,6 +26,12 @@ pub(crate) struct Lexer<'s, 'k> {
     previous_end: usize,
     /// Whether the text has ended with blocks open.
     has_ended: bool,
+    /// A token that follows the one in hand and is not written: the `if` of `elif`.
+    pending: Option<Token>,
+    /// Blocks of another language that are open.
+    foreign_blocks: u32,
+    /// The word of the declaration whose clauses are being read, and the braces open in it.
+    clauses: Option<(Token, u32)>,
 }
 
 impl<'s, 'k> Lexer<'s, 'k> {
@@ -34,9 +42,19 @@ impl<'s, 'k> Lexer<'s, 'k> {
             tokens.bump('\u{FEFF}'.len_utf8());
         }
         let nesting = Nesting::default();
-        let (before_previous, previous) = (Token::Semicolon, Token::Semicolon);
-        let (previous_end, has_ended) = (0, false);
-        Self { source, tokens, sink, nesting, before_previous, previous, previous_end, has_ended }
+        Self {
+            source,
+            tokens,
+            sink,
+            nesting,
+            before_previous: Token::Semicolon,
+            previous: Token::Semicolon,
+            previous_end: 0,
+            has_ended: false,
+            pending: None,
+            foreign_blocks: 0,
+            clauses: None,
+        }
     }
 
     /// The next token as the grammar knows it; none where what was read is left out.
@@ -45,6 +63,8 @@ impl<'s, 'k> Lexer<'s, 'k> {
         match token {
             Token::Integer | Token::Real => Some(self.number(token)),
             Token::MalformedNumber => Some(self.malformed_number()),
+            Token::Name if self.begins_statement() => self.first_word(),
+            _ if token.begins_statement() => self.statement_word(token),
             _ if token.is_word() => Some(self.word(token)),
             Token::UnclosedText => {
                 self.report(Code::UnterminatedString, "this text is not closed", |_| {
@@ -83,8 +103,134 @@ impl<'s, 'k> Lexer<'s, 'k> {
         };
         let meant_text = meant.text().unwrap_or_default();
         let message = format!("`{}` is not an operator here", self.tokens.slice());
-        self.report(Code::ForeignOperator, &message, |_| Some(format!("write `{meant_text}`")));
+        let diagnostic = Diagnostic::error(
+            Code::ForeignOperator,
+            self.span(),
+            message,
+            Code::ForeignOperator.title(),
+        );
+        let after = if token == Token::ForeignNot { " " } else { "" };
+        self.sink.report(
+            diagnostic
+                .with_help(format!("write `{meant_text}`"))
+                .replacing(self.span(), format!("{meant_text}{after}")),
+        );
         meant
+    }
+
+    /// A word that begins a statement, which clauses are none.
+    fn statement_word(&mut self, token: Token) -> Option<Token> {
+        use Token::{Distance, Io, Move, Set, Sleep, Toggle, Wait};
+        let Some((of, 1)) = self.clauses.filter(|_| self.begins_statement()) else {
+            return Some(self.word(token));
+        };
+        let (meant, why) = match (of, token) {
+            (Io, Set | Toggle | Sleep) => return Some(token),
+            (Io, Wait) => (Some(Sleep), "an I/O operation waits by `sleep`"),
+            (Io, _) => (None, "an I/O operation has `set`, `toggle` and `sleep`"),
+            (Move, Move) => (Some(Distance), "an advanced move says its motion by `distance`"),
+            (Move, _) => (None, "what an advanced move does afterwards stands in `on success { .. }` \
+                                 and `on failure { .. }`"),
+            _ => (None, "what the robot does stands in a sequence"),
+        };
+        let message = format!("`{}` is no clause", self.tokens.slice());
+        let span = self.span();
+        let error = Diagnostic::error(Code::UnexpectedToken, span, message, "not a clause");
+        if let Some(meant) = meant {
+            let instead = meant.text().unwrap_or_default();
+            self.sink.report(error.with_note(why).write_instead(span, instead));
+            return Some(meant);
+        }
+        self.sink.report(error.with_help(why));
+        let rest = self.rest();
+        self.leave_out(&rest[..rest.find(['\r', '\n']).unwrap_or(rest.len())], None)
+    }
+
+    /// Takes note of the braces of declarations that have clauses.
+    fn follow_clauses(&mut self, token: Token) {
+        self.clauses = match (token, self.clauses) {
+            (Token::OpenBrace, Some((of, open))) => Some((of, open + 1)),
+            (Token::OpenBrace, None) => match self.before_previous {
+                of @ (Token::Error | Token::Move | Token::Item | Token::Io)
+                    if self.previous.is_word() && !self.previous.is_reserved() =>
+                {
+                    Some((of, 1))
+                }
+                _ => None,
+            },
+            (Token::CloseBrace, Some((of, open))) if open > 1 => Some((of, open - 1)),
+            (Token::CloseBrace, _) => None,
+            (_, clauses) => clauses,
+        };
+    }
+
+    /// A name where a statement may begin: an assignment, or what another language begins one with.
+    fn first_word(&mut self) -> Option<Token> {
+        let (word, rest) = (self.tokens.slice(), self.rest());
+        if is_before_assignment(rest) || rest.starts_with(|c: char| !c.is_ascii()) {
+            return Some(self.word(Token::Name));
+        }
+        let line = &rest[..rest.find(['\r', '\n']).unwrap_or(rest.len())];
+        let goes_on = self.foreign_blocks > 0 && word.eq_ignore_ascii_case("else");
+        if goes_on || habits::ends_block(word) {
+            let is_awaited = self.foreign_blocks > 0;
+            self.foreign_blocks -= u32::from(is_awaited && !goes_on);
+            let habit = (!is_awaited).then(habits::end_of_block);
+            return self.leave_out(line, habit.as_ref());
+        }
+        let Some(habit) = habits::of(word, line) else { return Some(self.word(Token::Name)) };
+        match habit.then {
+            Then::NextLine => self.leave_out(line, Some(&habit)),
+            Then::InBlock => {
+                self.foreign_blocks += 1;
+                self.leave_out(line, Some(&habit))
+            }
+            Then::As(first, second) => {
+                self.report_habit(word.len(), &habit);
+                self.pending = second;
+                Some(first)
+            }
+        }
+    }
+
+    /// Leave the rest of a line out, as far as a brace or a comment.
+    fn leave_out(&mut self, line: &str, habit: Option<&Habit>) -> Option<Token> {
+        let end = line.find(['{', '}']).unwrap_or(line.len());
+        let end = line.find("//").map_or(end, |comment| comment.min(end));
+        if let Some(habit) = habit {
+            let written = line[..end].trim_end().trim_end_matches(';');
+            self.report_habit(self.tokens.slice().len() + written.len(), habit);
+        }
+        self.tokens.bump(end);
+        if line[end..].is_empty() || line[end..].starts_with("//") {
+            self.sink.line_ends();
+        }
+        self.previous = Token::Semicolon;
+        None
+    }
+
+    /// A word of another language, and so many bytes from its beginning.
+    fn report_habit(&self, length: usize, habit: &Habit) {
+        let start = self.span().start;
+        let span = Span::new(start, start + length as u32);
+        let message = format!("`{}` is a word of another language", self.tokens.slice());
+        let at = "not a statement of this language";
+        let mut diagnostic = Diagnostic::error(Code::ForeignWord, span, message, at);
+        diagnostic.help = Some(habit.help.clone());
+        diagnostic.suggestion = habit.instead.clone().map(|text| Suggestion { span, text });
+        self.sink.report(diagnostic);
+    }
+
+    /// Whether a statement may begin with a name here, seen from the text alone: after a brace or
+    /// `;`, or on a new line after what can end a statement and wants no name.
+    fn begins_statement(&self) -> bool {
+        let is_new = matches!(
+            self.previous,
+            Token::OpenBrace | Token::CloseBrace | Token::Semicolon
+        );
+        let is_name = self.previous.is_free() && self.before_previous.wants_name();
+        let is_over = is_name || self.previous.ends_statement();
+        is_new || is_over && !self.is_same_line() && !self.nesting.is_in_expression()
     }
 
     fn word(&mut self, token: Token) -> Token {
@@ -100,26 +246,30 @@ impl<'s, 'k> Lexer<'s, 'k> {
         if token.is_reserved() {
             return token;
         }
-        if is_before_assignment(self.rest()) {
+        if is_before_assignment(self.rest()) && self.clauses.is_none() {
             let is_operand = self.nesting.is_in_expression()
                 || self.previous.wants_operand(self.before_previous) && self.is_same_line();
             return if is_operand { token } else { Token::Assigned };
         }
         if self.previous == Token::CloseBracket && token == Token::Name && self.is_same_line() {
-            return self.unit(token);
+            return self.unit();
         }
         token
     }
 
     /// A word after `]`.
-    fn unit(&mut self, token: Token) -> Token {
+    fn unit(&mut self) -> Token {
         let from_word = self.source.get(self.tokens.span().start..).unwrap_or("");
         match unit_length(from_word) {
             Some(length) => {
                 self.tokens.bump(length - self.tokens.slice().len());
                 Token::Unit
             }
-            None => token,
+            // No name can follow a vector on its line.
+            None => {
+                self.sink.report(tree::unknown_unit(self.tokens.slice(), self.span(), &[]));
+                Token::Unit
+            }
         }
     }
 
@@ -129,6 +279,10 @@ impl<'s, 'k> Lexer<'s, 'k> {
         let word_and_on = rest.trim_start_matches([' ', '\t']);
         let blanks = rest.len() - word_and_on.len();
         let word = &word_and_on[..ascii_word_length(word_and_on)];
+        if let Some(blanks_and_sign) = degree_sign(rest) {
+            self.tokens.bump(blanks_and_sign);
+            return Token::BadQuantity;
+        }
         if word.is_empty() || is_before_assignment(&word_and_on[word.len()..]) {
             return token;
         }
@@ -154,15 +308,22 @@ impl<'s, 'k> Lexer<'s, 'k> {
             });
             return Token::Real;
         }
-        self.report(Code::MalformedNumber, "a digit is missing beside the point", |text| {
-            let whole = text.starts_with('.');
-            Some(if whole { format!("write `0{text}`") } else { format!("write `{text}0`") })
-        });
+        let text = self.tokens.slice();
+        let instead = if text.starts_with('.') { format!("0{text}") } else { format!("{text}0") };
+        let message = "a digit is missing beside the point";
+        let at = Code::MalformedNumber.title();
+        self.sink.report(
+            Diagnostic::error(Code::MalformedNumber, self.span(), message, at)
+                .write_instead(self.span(), &instead),
+        );
         self.number(Token::Real)
     }
 
     /// A character that no token begins with.
     fn foreign_character(&mut self) -> Option<Token> {
+        if self.tokens.slice() == "°" && self.previous == Token::CloseBracket {
+            return Some(self.unit());
+        }
         let foreign = foreign::read(self.tokens.slice(), self.rest());
         self.tokens.bump(foreign.length);
         self.sink.report(foreign::diagnostic(self.tokens.slice(), self.span()));
@@ -282,8 +443,16 @@ impl Iterator for Lexer<'_, '_> {
             if self.sink.is_full() {
                 return Some(Err(Stopped));
             }
-            let Some(raw) = self.tokens.next() else { return self.missing_brace().map(Ok) };
-            let Some(token) = self.refine(raw) else { continue };
+            let token = match self.pending.take() {
+                Some(token) => token,
+                None => {
+                    let Some(raw) = self.tokens.next() else {
+                        return self.missing_brace().map(Ok);
+                    };
+                    let Some(token) = self.refine(raw) else { continue };
+                    token
+                }
+            };
             match self.nesting.observe(token) {
                 Ok(()) => {}
                 Err(refusal) => {
@@ -298,6 +467,7 @@ impl Iterator for Lexer<'_, '_> {
                 self.give_up();
                 return Some(Err(Stopped));
             }
+            self.follow_clauses(token);
             let Span { start, end } = self.span();
             (self.before_previous, self.previous) = (self.previous, token);
             self.previous_end = end as usize;
@@ -311,6 +481,12 @@ fn ascii_word_length(text: &str) -> usize {
     let is_word_byte = |byte: &u8| byte.is_ascii_alphanumeric() || *byte == b'_';
     let begins = text.bytes().next().is_some_and(|byte| !byte.is_ascii_digit());
     if begins { text.bytes().take_while(is_word_byte).count() } else { 0 }
+}
+
+/// The length of a `°` that a text begins with, and of the blanks before it.
+fn degree_sign(text: &str) -> Option<usize> {
+    let sign = text.trim_start_matches([' ', '\t']);
+    sign.starts_with('°').then_some(text.len() - sign.len() + '°'.len_utf8())
 }
 
 /// The length of the unit that a text begins with: `mm`, or `mm/s` written without blanks.

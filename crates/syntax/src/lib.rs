@@ -3,11 +3,13 @@
 //! [`parse`] is the way in; GRAMMAR.md beside this crate has the grammar on a page. What a program
 //! means (names, types, units, reversal) is not known here.
 
+mod advice;
 pub mod ast;
 pub mod codes;
 pub mod diagnostic;
 mod expectation;
 mod foreign;
+mod habits;
 mod lexer;
 mod nearest;
 mod nesting;

@@ -132,6 +132,16 @@ impl<'s> Surroundings<'s> {
     }
 }
 
+/// A piece of source for a message: its first line, and not too much of it.
+pub(crate) fn shortened(text: &str) -> String {
+    const MOST: usize = 40;
+    let line = text.lines().next().unwrap_or("");
+    match line.char_indices().nth(MOST) {
+        Some((end, _)) => format!("{}..", &line[..end]),
+        None => line.to_owned(),
+    }
+}
+
 /// Keeps account of the open brackets; gives the one that the token closes. A bracket of another
 /// kind in between is given up, but no block for a `)` or `]`.
 fn follow(open: &mut Vec<Placed>, token: Placed) -> Option<Placed> {

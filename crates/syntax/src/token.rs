@@ -156,6 +156,53 @@ impl Token {
         )
     }
 
+    /// Whether a statement or declaration can end with it, and no name can follow it in one.
+    pub(crate) fn ends_statement(self) -> bool {
+        use Token::*;
+        matches!(
+            self,
+            Name | Assigned
+                | Integer
+                | Real
+                | Quantity
+                | Unit
+                | Text
+                | CloseParenthesis
+                | CloseBracket
+                | True
+                | False
+                | Holding
+                | Force
+                | Break
+                | Forward
+                | Backward
+                | Backwards
+                | Left
+                | Right
+                | Up
+                | Down
+                | X
+                | Y
+                | Z
+                | Base
+                | Tcp
+                | ToolMount
+                | Slow
+                | Normal
+                | Fast
+                | High
+                | Low
+                | Linearly
+                | Always
+        )
+    }
+
+    /// Whether a name follows it and ends the statement. Reserved words alone, which are no names.
+    pub(crate) fn wants_name(self) -> bool {
+        use Token::*;
+        matches!(self, To | Io | Call | Advance | Throw | Checkpoint)
+    }
+
     /// Whether what follows on the line is an operand: the `x` of `if x = 3` is none that is
     /// assigned. The token before tells whether a word such as `when` is a name.
     pub(crate) fn wants_operand(self, before: Self) -> bool {

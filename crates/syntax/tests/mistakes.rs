@@ -63,7 +63,7 @@ fn codes_are_unique_and_sorted_and_found_by_name() {
 fn at_most_three_things_are_expected_and_none_is_a_token_of_the_parser() {
     let cases = [
         ("move start to", "expected a direction or an operator, found `to`"),
-        ("end", "expected a statement or `}`, found `end`"),
+        ("ready", "expected a statement or `}`, found `ready`"),
         ("a = 3 4", "expected a statement, `}` or an operator, found `4`"),
         ("a = = 3", "expected a value, found `=`"),
         ("set x high", "expected a whole number, found `x`"),

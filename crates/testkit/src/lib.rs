@@ -6,6 +6,7 @@
 pub mod altered;
 pub mod code;
 pub mod hostile;
+pub mod large;
 pub mod laws;
 pub mod ledger;
 pub mod logged;

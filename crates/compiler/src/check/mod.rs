@@ -166,7 +166,7 @@ impl<'s> Checker<'s> {
             Diagnostic::error(Code::UnknownName, name.span, message, "declared nowhere");
         let meant = self.reports.meant(name.value, self.names.candidates(wanted));
         if let Some(meant) = meant {
-            diagnostic = diagnostic.with_help(format!("did you mean `{meant}`?"));
+            diagnostic = diagnostic.did_you_mean(name.span, meant);
             self.names.mark_used(meant);
         }
         self.reports.add(diagnostic);

@@ -156,8 +156,10 @@ impl<'s> Checker<'s> {
             let mut diagnostic =
                 Diagnostic::error(Code::UnknownType, name.span, message, "not a type")
                     .with_note(format!("the types are {}", names.join(", ")));
-            if let Some(meant) = self.reports.meant(name.value, names.into_iter()) {
-                diagnostic = diagnostic.with_help(format!("did you mean `{meant}`?"));
+            if let Some(meant) = foreign_type(name.value) {
+                diagnostic = diagnostic.write_instead(name.span, meant);
+            } else if let Some(meant) = self.reports.meant(name.value, names.into_iter()) {
+                diagnostic = diagnostic.did_you_mean(name.span, meant);
             }
             self.reports.add(diagnostic);
             ValueType::Unknown
@@ -267,7 +269,7 @@ impl<'s> Checker<'s> {
                 Diagnostic::error(Code::UnknownCheckpoint, wanted.span, message, "set nowhere");
             let known = self.set_checkpoints.iter().copied();
             diagnostic = match self.reports.meant(wanted.value, known) {
-                Some(meant) => diagnostic.with_help(format!("did you mean `{meant}`?")),
+                Some(meant) => diagnostic.did_you_mean(wanted.span, meant),
                 None => {
                     diagnostic.with_help(format!("write `checkpoint {}` where it is", wanted.value))
                 }
@@ -302,4 +304,19 @@ impl<'s> Checker<'s> {
             );
         }
     }
+}
+
+/// The type that is meant by the name that another language has for it.
+fn foreign_type(name: &str) -> Option<&'static str> {
+    Some(match name.to_lowercase().as_str() {
+        "integer" | "long" | "i64" | "i32" => "int",
+        "float" | "double" | "real" | "num" | "f64" | "f32" => "number",
+        "boolean" | "flag" => "bool",
+        "distance" | "metres" | "meters" | "mm" => "length",
+        "duration" | "seconds" => "time",
+        "degrees" | "radians" => "angle",
+        "newtons" => "force",
+        "robtarget" | "jointtarget" | "position" | "pose" | "configuration" => "joints",
+        _ => return None,
+    })
 }
