@@ -26,12 +26,13 @@ pub(crate) fn problem(problem: &Problem) {
 /// Show the diagnostics of a source text, and how many there are.
 pub(crate) fn diagnostics(diagnosed: &Diagnosed) {
     let mut shown = Vec::new();
-    let is_terminal = std::io::stderr().is_terminal();
-    let text = printable(&diagnosed.text);
+    let is_coloured = is_coloured(&std::io::stderr());
+    // These end a line for the drawing and for nothing else.
+    let text = printable(&diagnosed.text).replace(['\u{2028}', '\u{2029}'], "???");
     let lines = LineIndex::new(&text);
     for diagnostic in &diagnosed.diagnostics {
         match is_drawn(&lines, diagnostic) {
-            true => draw(&diagnosed.name, &text, diagnostic, is_terminal, &mut shown),
+            true => draw(&diagnosed.name, &text, diagnostic, is_coloured, &mut shown),
             false => write_out(&diagnosed.name, &lines, diagnostic, &mut shown),
         }
     }
@@ -57,6 +58,14 @@ pub(crate) fn counted(diagnostics: &[Diagnostic]) -> String {
         .map(|(count, word)| format!("{count} {word}{}", if *count == 1 { "" } else { "s" }))
         .collect();
     total.join(", ")
+}
+
+/// Whether what is written there is coloured: on a terminal that can show it, unless `NO_COLOR` is
+/// set (<https://no-color.org>).
+pub(crate) fn is_coloured(stream: &impl IsTerminal) -> bool {
+    let is_set = |name| std::env::var_os(name).is_some_and(|value| !value.is_empty());
+    let is_dumb = std::env::var_os("TERM").is_some_and(|term| term == "dumb");
+    stream.is_terminal() && !is_set("NO_COLOR") && !is_dumb
 }
 
 fn to_stderr(bytes: &[u8]) {
@@ -104,17 +113,18 @@ fn draw(name: &str, text: &str, diagnostic: &Diagnostic, color: bool, shown: &mu
     let mut report = Report::build(kind, at(diagnostic.primary.span))
         .with_config(config)
         .with_code(diagnostic.code.as_str())
-        .with_message(&diagnostic.message)
-        .with_label(
-            Label::new(at(diagnostic.primary.span))
-                .with_message(&diagnostic.primary.text)
-                .with_color(main_color)
-                .with_order(-1),
-        );
-    for label in &diagnostic.labels {
-        report = report.with_label(
-            Label::new(at(label.span)).with_message(&label.text).with_color(Color::Blue),
-        );
+        .with_message(&diagnostic.message);
+    let primary = (&diagnostic.primary, main_color);
+    let others = diagnostic.labels.iter().map(|label| (label, Color::Blue));
+    let mut labels: Vec<_> = std::iter::once(primary).chain(others).collect();
+    // In the order of the text, and what spans lines last: it is then drawn in one piece.
+    let spans_lines = |span: Span| {
+        text.get(span.start as usize..span.end as usize).is_some_and(|text| text.contains('\n'))
+    };
+    labels.sort_by_key(|(label, _)| (spans_lines(label.span), label.span.start));
+    for (label, color) in labels {
+        let drawn = Label::new(at(label.span)).with_message(&label.text);
+        report = report.with_label(drawn.with_color(color));
     }
     for note in &diagnostic.notes {
         report = report.with_note(note);
@@ -154,6 +164,15 @@ pub(crate) fn diagnostics_json(diagnosed: &Diagnosed) -> Vec<Value> {
         object["labels"] = labels.collect();
         object["notes"] = json!(diagnostic.notes);
         object["help"] = json!(diagnostic.help);
+        object["suggestion"] = match &diagnostic.suggestion {
+            Some(suggestion) => {
+                let mut change = label(suggestion.span, &suggestion.text);
+                change["start_byte"] = json!(suggestion.span.start);
+                change["end_byte"] = json!(suggestion.span.end);
+                change
+            }
+            None => Value::Null,
+        };
         object
     };
     diagnosed.diagnostics.iter().map(object).collect()
@@ -172,6 +191,7 @@ fn message_json(message: &Message) -> Value {
         "labels": [],
         "notes": [],
         "help": null,
+        "suggestion": null,
     })
 }
 

@@ -4,6 +4,7 @@ use super::Result;
 use crate::load::{self, Program};
 use crate::problem::Problem;
 use crate::{Outcome, show, write};
+use obverse_syntax::codes::Code;
 use obverse_syntax::diagnostic::{Diagnostic, Severity};
 use serde_json::json;
 use std::path::PathBuf;
@@ -15,9 +16,52 @@ pub(crate) struct Arguments {
     /// The workcell file, in place of the one that the program names.
     #[arg(long, value_name = "FILE")]
     cell: Option<PathBuf>,
+    /// Warnings that are not let pass: `warnings` for all of them, or the code of one.
+    #[arg(long, value_name = "WHAT", value_parser = denied)]
+    deny: Vec<Denied>,
     /// For machines: JSON Lines, an object a diagnostic and a summary last.
     #[arg(long)]
     json: bool,
+}
+
+/// Warnings that are not let pass.
+#[derive(Clone, Copy, Debug)]
+enum Denied {
+    /// All.
+    All,
+    /// Those of a code.
+    Of(Code),
+}
+
+fn denied(word: &str) -> std::result::Result<Denied, String> {
+    if word == "warnings" {
+        return Ok(Denied::All);
+    }
+    let warnings = Code::ALL.iter().filter(|code| code.as_str().starts_with('W'));
+    match word.parse::<Code>() {
+        Ok(code) if code.as_str().starts_with('W') => Ok(Denied::Of(code)),
+        Ok(_) => Err("this is an error, which is never let pass".to_owned()),
+        Err(_) => {
+            let words = warnings.map(|code| code.as_str()).chain(["warnings"]);
+            Err(obverse_syntax::nearest(word, words).map_or_else(
+                || "write `warnings`, or the code of one, such as W0001".to_owned(),
+                |near| format!("did you mean `{near}`?"),
+            ))
+        }
+    }
+}
+
+impl Arguments {
+    /// How many of the warnings are not let pass.
+    fn denied(&self, warnings: &[Diagnostic]) -> usize {
+        let is_denied = |warning: &&Diagnostic| {
+            self.deny.iter().any(|denied| match denied {
+                Denied::All => true,
+                Denied::Of(code) => *code == warning.code,
+            })
+        };
+        warnings.iter().filter(is_denied).count()
+    }
 }
 
 pub(crate) fn run(arguments: &Arguments) -> Result {
@@ -27,6 +71,12 @@ pub(crate) fn run(arguments: &Arguments) -> Result {
     let program = load::program(&arguments.file)?;
     let cell = in_its_cell(arguments, &program)?;
     let module = program.verified.module();
+    let denied = arguments.denied(warnings_of(&program));
+    if denied > 0 {
+        let words = if denied == 1 { "warning that is" } else { "warnings that are" };
+        write::line(&format!("{}: {denied} {words} not let pass", arguments.file.display()));
+        return Ok(Outcome::EndedOtherwise);
+    }
     let warnings = show::counted(warnings_of(&program));
     let warnings = if warnings.is_empty() { "no warnings" } else { &warnings };
     write::line(&format!(
@@ -50,7 +100,7 @@ fn warnings_of(program: &Program) -> &[Diagnostic] {
 }
 
 fn as_json(arguments: &Arguments) -> Result {
-    let (mut errors, mut warnings) = (0, 0);
+    let (mut errors, mut warnings, mut denied) = (0, 0, 0);
     let mut summary = json!({ "type": "summary", "file": arguments.file.display().to_string() });
     let checked = load::quietly(&arguments.file).and_then(|program| {
         if let Some(diagnosed) = &program.source {
@@ -60,6 +110,7 @@ fn as_json(arguments: &Arguments) -> Result {
         summary["functions"] = json!(module.functions.len());
         summary["instructions"] = json!(module.code.len());
         warnings = warnings_of(&program).len();
+        denied = arguments.denied(warnings_of(&program));
         in_its_cell(arguments, &program)
     });
     match &checked {
@@ -74,9 +125,15 @@ fn as_json(arguments: &Arguments) -> Result {
             errors += problem.messages.len();
         }
     }
-    summary["outcome"] = json!(if checked.is_ok() { "correct" } else { "wrong" });
+    let (outcome, words) = match &checked {
+        Err(_) => (Outcome::Wrong, "wrong"),
+        Ok(_) if denied > 0 => (Outcome::EndedOtherwise, "denied"),
+        Ok(_) => (Outcome::Done, "correct"),
+    };
+    summary["outcome"] = json!(words);
     summary["errors"] = json!(errors);
     summary["warnings"] = json!(warnings);
+    summary["denied"] = json!(denied);
     write::line(&summary.to_string());
-    Ok(if checked.is_ok() { Outcome::Done } else { Outcome::Wrong })
+    Ok(outcome)
 }

@@ -5,18 +5,28 @@ use crate::problem::Problem;
 use crate::{Outcome, write};
 use obverse_isa::{OPS, Opcode, reference};
 use obverse_syntax::codes::Code;
+use serde_json::{Value, json};
 
 /// How wide prose is set.
 const COLUMNS: usize = 80;
 
 #[derive(clap::Args)]
 pub(crate) struct Arguments {
-    /// A mnemonic such as `move.joint`, or a code such as `E0201`.
-    word: String,
+    /// A mnemonic such as `move.joint`, or a code such as `E0201`; without it, all codes are listed.
+    word: Option<String>,
+    /// For machines: JSON Lines, an object a code or opcode and a summary last.
+    #[arg(long)]
+    pub(crate) json: bool,
 }
 
 pub(crate) fn run(arguments: &Arguments) -> Result {
-    let word = arguments.word.trim();
+    let Some(word) = arguments.word.as_deref().map(str::trim) else {
+        list(arguments.json);
+        return Ok(Outcome::Done);
+    };
+    if arguments.json {
+        return as_json(word);
+    }
     if let Some(opcode) = Opcode::from_mnemonic(&word.to_lowercase()) {
         write::out(&set(&reference::explain(opcode.info())));
         return Ok(Outcome::Done);
@@ -25,14 +35,64 @@ pub(crate) fn run(arguments: &Arguments) -> Result {
         write::out(&set(code.explanation()));
         return Ok(Outcome::Done);
     }
+    Err(unknown(word))
+}
+
+/// Every code with its title, a line each.
+fn list(is_json: bool) {
+    match is_json {
+        true => tell(Code::ALL.iter().map(|code| of_code(*code))),
+        false => {
+            Code::ALL.iter().for_each(|code| write::line(&format!("{code}  {}", code.title())))
+        }
+    }
+}
+
+fn as_json(word: &str) -> Result {
+    if let Some(opcode) = Opcode::from_mnemonic(&word.to_lowercase()) {
+        let row = opcode.info();
+        tell(std::iter::once(json!({
+            "type": "opcode",
+            "mnemonic": row.mnemonic,
+            "class": row.class.name(),
+            "explanation": reference::explain(row),
+        })));
+        return Ok(Outcome::Done);
+    }
+    let code: Code = word.parse().map_err(|_| unknown(word))?;
+    tell(std::iter::once(of_code(code)));
+    Ok(Outcome::Done)
+}
+
+fn of_code(code: Code) -> Value {
+    json!({
+        "type": "code",
+        "code": code.as_str(),
+        "title": code.title(),
+        "explanation": code.explanation(),
+        "wrong": code.wrong_example(),
+        "right": code.right_example(),
+    })
+}
+
+fn tell(objects: impl Iterator<Item = Value>) {
+    let mut count = 0;
+    for object in objects {
+        write::line(&object.to_string());
+        count += 1;
+    }
+    write::line(&json!({ "type": "summary", "outcome": "done", "explained": count }).to_string());
+}
+
+fn unknown(word: &str) -> Problem {
     let words =
         OPS.iter().map(|row| row.mnemonic).chain(Code::ALL.iter().map(|code| code.as_str()));
     let near = obverse_syntax::nearest(word, words);
     let hint = near.map_or_else(
-        || "`obverse isa` lists the opcodes, and diagnostics show their codes".to_owned(),
+        || "`obverse isa` lists the opcodes, and `obverse explain` the codes".to_owned(),
         |near| format!("did you mean `{near}`?"),
     );
-    Err(Problem::new(format!("`{word}` is neither an opcode nor the code of a diagnostic; {hint}")))
+    Problem::new(format!("`{word}` is neither an opcode nor the code of a diagnostic; {hint}"))
 }
 
 /// The lines of a text, broken between words where they are too long.

@@ -4,11 +4,13 @@
 //! `effects` (errors and barriers across calls), `lower` (checked tree to code). Knows nothing of
 //! machines and robots; the parser is `obverse-syntax`.
 
+mod allow;
 mod check;
 mod effects;
 mod fold;
 mod keyframes;
 mod lower;
+mod reached;
 mod recursion;
 mod report;
 mod response;
@@ -17,6 +19,7 @@ mod tree;
 mod types;
 mod units;
 
+use allow::Allows;
 use effects::Effects;
 use obverse_bytecode::Module;
 use obverse_syntax::diagnostic::{Diagnostic, Severity};
@@ -36,7 +39,7 @@ pub struct Compiled {
 pub fn compile(source_name: &str, source: &str) -> Compiled {
     let parsed = obverse_syntax::parse(source);
     let is_whole = parsed.diagnostics.iter().all(|found| found.severity != Severity::Error);
-    let reports = Reports::new(is_whole);
+    let reports = Reports::new(is_whole, Allows::of(&parsed.program));
     let (program, mut reports) = check::check(source_name, source, &parsed.program, reports);
     let module = program.filter(|_| is_whole).and_then(|program| {
         let effects = Effects::of(&program);
@@ -47,6 +50,7 @@ pub fn compile(source_name: &str, source: &str) -> Compiled {
             false => lower::lower(program, &effects, &mut reports),
         }
     });
+    reports.warn_of_useless();
     let mut diagnostics = parsed.diagnostics;
     diagnostics.extend(reports.into_diagnostics());
     diagnostics.sort_by_key(|diagnostic| diagnostic.primary.span);

@@ -163,6 +163,9 @@ impl Unexpected<'_> {
         if is_wait {
             return Some(said("say how long it waits at the most: `for up to 2 s`"));
         }
+        if self.expectation.allows("TEXT") && self.expectation.allows("in") {
+            return Some(said("say why: `allow W0001 \"..\"`, or `allow W0001 in file \"..\"`"));
+        }
         if self.found == Token::Sequence && self.expectation.allows("{") {
             return Some(said("clauses stand in braces, which may be empty: `{ }`"));
         }

@@ -30,6 +30,12 @@ macro_rules! codes {
                 match self { $(Self::$name => $title,)* }
             }
 
+            /// Why it is wrong, and what is asked for.
+            #[must_use]
+            pub fn reason(self) -> &'static str {
+                match self { $(Self::$name => $why,)* }
+            }
+
             /// The page that explains it: what, why, an example wrong and the same right.
             #[must_use]
             pub fn explanation(self) -> &'static str {
@@ -58,6 +64,40 @@ macro_rules! codes {
             }
         }
     };
+}
+
+/// The index of all codes, as a page: docs/codes.md.
+#[must_use]
+pub fn page() -> String {
+    let mut page = String::from(
+        "# Diagnostics\n\nEvery message of the compiler has a code, which never means anything \
+         else. `obverse explain CODE` shows what stands here. This page is written by `UPDATE=1 \
+         cargo test --test codes`.\n\nA warning that is meant is allowed, for the statement or \
+         declaration that follows, or for the file:\n\n```\nallow W0001 \"the operator reads it\"\n\
+         allow W0001 in file \"taught poses, of which each program uses some\"\n```\n\n\
+         `obverse check --deny warnings` lets no warning pass that is not allowed.\n\n\
+         | code | |\n| --- | --- |\n",
+    );
+    for code in Code::ALL {
+        let anchor = code.as_str().to_lowercase();
+        page += &format!("| [{code}](#{anchor}) | {} |\n", code.title());
+    }
+    for code in Code::ALL {
+        page += &format!("\n## {code}\n\n**{}.** {}\n", capital(code.title()), code.reason());
+        for (word, example) in [("Wrong", code.wrong_example()), ("Right", code.right_example())] {
+            // Examples of what is too large would be.
+            if !example.is_empty() && example.len() < 400 {
+                page += &format!("\n{word}:\n\n```\n{example}\n```\n");
+            }
+        }
+    }
+    page
+}
+
+fn capital(text: &str) -> String {
+    let mut letters = text.chars();
+    let first = letters.next().map(|first| first.to_ascii_uppercase());
+    first.into_iter().chain(letters).collect()
 }
 
 impl std::str::FromStr for Code {
@@ -99,7 +139,8 @@ codes! {
         wrong "var größe = 3 mm"
         right "var size = 3 mm"
     UnterminatedString "E0002" "a text without its closing quote"
-        why "A text begins with `\"` and ends with `\"` on the same line."
+        why "A text begins with `\"` and ends with `\"` on the same line; there is no way to write \
+             a `\"` in one."
         wrong "cell \"peg.toml"
         right "cell \"peg.toml\""
     NumberOutOfRange "E0003" "a number that is too large"
@@ -120,7 +161,8 @@ codes! {
         wrong "var gap = 3 mmm"
         right "var gap = 3 mm"
     SourceTooLarge "E0006" "a source text that is too large"
-        why "A source text has at most 256 MiB."
+        why "A source text has at most 256 MiB. What is larger was hardly written by people; name \
+             what repeats, and call it."
         wrong ""
         right ""
     NotText "E0007" "a file that is not text"
@@ -253,6 +295,15 @@ codes! {
                sequence main { throw jam }"
         right "error jam { recover by reversing to checkpoint ready }\n\
                sequence main { checkpoint ready throw jam }"
+    UnknownCode "E0110" "a code that is no warning's"
+        why "`allow` takes the code of a warning, `W0001` for example. Errors cannot be allowed. It \
+             holds for the statement or declaration that follows; with `in file`, for the file. \
+             docs/codes.md lists the codes."
+        wrong "allow E0001 \"it is read by the operator\"\n\
+               sequence main { wait 1 s }"
+        right "allow W0001 \"it is read by the operator\"\n\
+               var count = 0\n\
+               sequence main { count += 1 }"
 
     // E02xx: types and units.
     TypeMismatch "E0201" "a value of another type"
@@ -260,7 +311,7 @@ codes! {
              another. An integer that is written out stands for a number where one is needed; any \
              other is turned into one by `real(n)`, and a number into an integer by `int(x)`."
         wrong "sequence main { if 1 { wait 1 s } }"
-        right "sequence main { if 1 > 0 { wait 1 s } }"
+        right "sequence main { if holding { wait 1 s } }"
     UnitMismatch "E0202" "a value of another unit"
         why "Values are added, compared and assigned only where they measure the same: a length is \
              never compared with a time. Units of one kind convert: mm and m, deg and rad. \
@@ -433,7 +484,7 @@ codes! {
         why "What follows `ending when` and `entered when` is evaluated in both directions and \
              must say the same in both. A reading of the workcell or a random draw need not. Store \
              it in a variable and assert that."
-        wrong "sequence main { if 1 > 0 { wait 1 s } ending when input 3 }"
+        wrong "sequence main { if holding { wait 1 s } ending when input 3 }"
         right "sequence main { var part = input 3 if part { wait 1 s } ending when part }"
     UselessAssertion "E0404" "an assertion where no ways join"
         why "`ending when` and `entered when` tell two ways apart that come together. Where one of \
@@ -499,4 +550,26 @@ codes! {
                sequence main { call blink }"
         right "sequence blink { loop { toggle 0 wait 1 s } }\n\
                sequence main { call blink }"
+    UselessAllow "W0010" "an `allow` that allows nothing"
+        why "What was warned of has gone, or stands elsewhere: an `allow` holds for the statement \
+             or declaration that follows it, and with `in file` for the file."
+        wrong "allow W0001 \"it is read by the operator\"\n\
+               var count = 0\n\
+               sequence main { count += 1 if count > 3 { wait 1 s } }"
+        right "var count = 0\n\
+               sequence main { count += 1 if count > 3 { wait 1 s } }"
+    NeverReached "W0011" "something that only what is never run uses"
+        why "A program begins with its main sequence; sequences, moves and I/O operations that no \
+             way from there leads to are never run, though something names them."
+        wrong "io blink { toggle 0 }\n\
+               sequence _spare { io blink }\n\
+               sequence main { wait 1 s }"
+        right "io blink { toggle 0 }\n\
+               sequence main { io blink wait 1 s }"
+    ConstantCondition "W0012" "a condition that is always the same"
+        why "The condition reads nothing that could change, so that one of the ways is never taken: \
+             a variable may be meant, or a reading. A loop for ever is written `loop { .. }`. A loop \
+             that counts upwards does nothing where its last value is below its first."
+        wrong "sequence main { while 1 > 2 { wait 1 s } }"
+        right "sequence main { while input 3 { wait 1 s } }"
 }

@@ -144,6 +144,7 @@ const STATEMENTS: &[&str] = &[
     "wait",
     "while",
     "position",
+    "allow",
     "speed",
     "tool",
     "ASSIGNED",

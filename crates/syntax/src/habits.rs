@@ -194,10 +194,9 @@ fn declaration(plain: &str, word: &str, next: &str, rest: &str) -> Option<Habit>
             format!("a position is declared by its joints: `joints {name} = [..] deg`"),
             Then::NextLine,
         ),
-        false => said(
-            format!("write `var {name} = ..`; the type is that of its value"),
-            Then::NextLine,
-        ),
+        false => {
+            said(format!("write `var {name} = ..`; the type is that of its value"), Then::NextLine)
+        }
     })
 }
 

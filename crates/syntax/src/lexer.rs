@@ -129,8 +129,11 @@ impl<'s, 'k> Lexer<'s, 'k> {
             (Io, Wait) => (Some(Sleep), "an I/O operation waits by `sleep`"),
             (Io, _) => (None, "an I/O operation has `set`, `toggle` and `sleep`"),
             (Move, Move) => (Some(Distance), "an advanced move says its motion by `distance`"),
-            (Move, _) => (None, "what an advanced move does afterwards stands in `on success { .. }` \
-                                 and `on failure { .. }`"),
+            (Move, _) => (
+                None,
+                "what an advanced move does afterwards stands in `on success { .. }` \
+                                 and `on failure { .. }`",
+            ),
             _ => (None, "what the robot does stands in a sequence"),
         };
         let message = format!("`{}` is no clause", self.tokens.slice());
@@ -224,10 +227,8 @@ impl<'s, 'k> Lexer<'s, 'k> {
     /// Whether a statement may begin with a name here, seen from the text alone: after a brace or
     /// `;`, or on a new line after what can end a statement and wants no name.
     fn begins_statement(&self) -> bool {
-        let is_new = matches!(
-            self.previous,
-            Token::OpenBrace | Token::CloseBrace | Token::Semicolon
-        );
+        let is_new =
+            matches!(self.previous, Token::OpenBrace | Token::CloseBrace | Token::Semicolon);
         let is_name = self.previous.is_free() && self.before_previous.wants_name();
         let is_over = is_name || self.previous.ends_statement();
         is_new || is_over && !self.is_same_line() && !self.nesting.is_in_expression()

@@ -60,7 +60,10 @@ fn leave_out_consequences(
         let start = diagnostic.primary.span.start;
         let is_behind = |error: &&SyntaxError| {
             let between = error.span.start as usize..start as usize;
-            between.len() < LONG_LINE && source.get(between).is_some_and(|text| !text.is_empty() && !text.contains(['\n', '\r']))
+            between.len() < LONG_LINE
+                && source
+                    .get(between)
+                    .is_some_and(|text| !text.is_empty() && !text.contains(['\n', '\r']))
         };
         index > worded || !is_of_lexer(diagnostic.code) || !errors.iter().any(|e| is_behind(&e))
     });

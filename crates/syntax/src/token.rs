@@ -96,10 +96,11 @@ tokens! {
         Toggle "toggle" True "true" Until "until" Var "var" Wait "wait" While "while"
     }
     free {
-        Action "action" Actions "actions" Advanced "advanced" After "after" Always "always" At "at"
+        Action "action" Actions "actions" Advanced "advanced" After "after" Allow "allow"
+        Always "always" At "at"
         Backward "backward" Backwards "backwards" Base "base" By "by" Cell "cell"
         Continue "continue" Current "current" Down "down" Ending "ending" Entered "entered"
-        Error "error" Escalating "escalating" Failure "failure" Fast "fast" Fatal "fatal"
+        Error "error" Escalating "escalating" Failure "failure" Fast "fast" Fatal "fatal" File "file"
         Forward "forward" From "from" High "high" In "in" Initial "initial" Item "item"
         Joints "joints" Keyframe "keyframe" Learned "learned" Left "left" Lighter "lighter"
         Linearly "linearly" Low "low" Normal "normal" Of "of" On "on" Once "once"

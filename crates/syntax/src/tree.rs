@@ -275,6 +275,7 @@ pub(crate) fn declaration_inside<'s>(sink: &Sink<'s>, item: Item<'s>, start: u32
         Item::Error(error) => ("error", error.name.span.end),
         Item::AdvancedMove(advanced) => ("advanced move", advanced.name.span.end),
         Item::Variable(variable) => ("variable", variable.name.span.end),
+        Item::Allow(allow) => ("allow", allow.span.end),
         Item::Sequence(sequence) if sequence.is_action => ("action", sequence.name.span.end),
         Item::Sequence(sequence) => ("sequence", sequence.name.span.end),
     };

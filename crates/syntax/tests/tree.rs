@@ -451,6 +451,7 @@ fn outline(statement: &Statement<'_>) -> String {
             format!("do{}{}", block(body), block(replacement))
         }
         StatementKind::Throw(name) => format!("throw:{}", name.value),
+        StatementKind::Allow(allow) => format!("allow:{}:{}", allow.code.value, allow.in_file),
     }
 }
 
@@ -473,6 +474,8 @@ fn statements_are_told_apart() {
         ("set 0 high toggle 1 sleep 1 s", "primitive primitive primitive"),
         ("var a = 1", "var:a"),
         ("position here", "position:here"),
+        ("allow W0001 \"why\" break", "allow:W0001:false break"),
+        ("allow W0001 in file \"why\"", "allow:W0001:true"),
         ("a = 1 a += 2 a -= 3", "a:Set:1 a:Add:2 a:Subtract:3"),
         ("while a { break }", "while:a{break}"),
         ("while a entered when b { }", "while:a:b{}"),

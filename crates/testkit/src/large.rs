@@ -120,7 +120,7 @@ pub fn program(lines: usize) -> String {
     for index in 0..stations {
         let _ = writeln!(text, "  call station_{index}({} mm, {})", index % 7 + 1, index % 5);
     }
-    text.push_str("}\n");
+    text.push_str("  if rejected > produced { throw jammed }\n}\n");
     text
 }
 

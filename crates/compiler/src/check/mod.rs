@@ -15,6 +15,7 @@ mod names;
 mod operators;
 mod program;
 mod statement;
+mod unused;
 
 use crate::keyframes::KeyframeFlow;
 use crate::report::Reports;

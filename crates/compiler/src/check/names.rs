@@ -79,6 +79,10 @@ pub(crate) struct Symbol<'s> {
     pub(crate) meaning: Meaning,
     /// Whether something needs it.
     pub(crate) is_used: bool,
+    /// Whether something is assigned to it.
+    pub(crate) is_assigned: bool,
+    /// Whether a caller gives it its value.
+    pub(crate) is_parameter: bool,
     frame: u32,
 }
 
@@ -114,7 +118,9 @@ pub(crate) struct OuterFrame(u32);
 impl<'s> Names<'s> {
     /// Give a name a meaning from here on; the place where it has one already.
     pub(crate) fn declare(&mut self, name: Name<'s>, meaning: Meaning) -> Option<Span> {
-        let symbol = Symbol { name, meaning, is_used: false, frame: self.frame };
+        let (is_used, is_assigned, is_parameter) = (false, false, false);
+        let frame = self.frame;
+        let symbol = Symbol { name, meaning, is_used, is_assigned, is_parameter, frame };
         let before = self.visible.insert(name.value, self.symbols.len());
         self.symbols.push(symbol);
         self.hidden.push((name.value, before));
@@ -137,6 +143,20 @@ impl<'s> Names<'s> {
     pub(crate) fn mark_used(&mut self, name: &str) {
         if let Some(&index) = self.visible.get(name) {
             self.symbols[index].is_used = true;
+        }
+    }
+
+    /// Note that something is assigned to a name.
+    pub(crate) fn mark_assigned(&mut self, name: &str) {
+        if let Some(&index) = self.visible.get(name) {
+            self.symbols[index].is_assigned = true;
+        }
+    }
+
+    /// Note that a name is that of a parameter.
+    pub(crate) fn mark_parameter(&mut self, name: &str) {
+        if let Some(&index) = self.visible.get(name) {
+            self.symbols[index].is_parameter = true;
         }
     }
 

@@ -5,7 +5,8 @@ use super::frame::FrameScope;
 use super::names::{Found, Meaning, Names};
 use super::{Checker, Interned, Signature};
 use crate::keyframes::KeyframeFlow;
-use crate::report::{Reports, warning};
+use crate::reached;
+use crate::report::Reports;
 use crate::tree;
 use crate::types::{TYPE_NAMES, ValueType};
 use obverse_bytecode::{Module, SourceFile};
@@ -29,14 +30,17 @@ pub(crate) fn check<'s>(
     checker.check_bodies(program);
     let main = checker.main(program);
     checker.check_checkpoints();
-    checker.warn_of_unused(main);
+    let unnamed = checker.warn_of_unused(main);
     let flow = std::mem::take(&mut checker.keyframes);
     flow.check(&checker.module, &mut checker.reports);
     let Checker { reports, functions, module, first_values, .. } = checker;
     let functions: Option<Vec<tree::Function>> = functions.into_iter().collect();
+    let mut reports = reports;
     let checked = match (main, functions) {
         (Some(main), Some(functions)) if !reports.has_errors() => {
-            Some(tree::Program { module, first_values, functions, main })
+            let checked = tree::Program { module, first_values, functions, main };
+            reached::check(&checked, &unnamed, &mut reports);
+            Some(checked)
         }
         _ => None,
     };
@@ -83,6 +87,7 @@ impl<'s> Checker<'s> {
                     _ = self.declare_function(guarded.name, Meaning::Guarded);
                 }
                 Item::Sequence(sequence) => self.declare_sequence(sequence),
+                Item::Allow(_) => {}
                 Item::Joints(joints) => {
                     let entries = self.module.joints.len();
                     let id = self.index(entries, "joint configurations", joints.name.span);
@@ -184,7 +189,7 @@ impl<'s> Checker<'s> {
                 Item::Variable(variable) => self.check_global(variable),
                 Item::Io(io) => self.check_counterpart(io),
                 Item::Error(error) => self.check_error(error),
-                Item::Cell(_) | Item::AdvancedMove(_) | Item::Sequence(_) => {}
+                Item::Cell(_) | Item::AdvancedMove(_) | Item::Sequence(_) | Item::Allow(_) => {}
             }
         }
     }
@@ -275,33 +280,6 @@ impl<'s> Checker<'s> {
                 }
             };
             self.reports.add(diagnostic);
-        }
-    }
-
-    fn warn_of_unused(&mut self, main: Option<FunctionId>) {
-        if self.reports.has_errors() {
-            // What would use a thing may be what has the mistake.
-            return;
-        }
-        for symbol in self.names.all() {
-            let name = symbol.name.value;
-            let is_main = matches!(symbol.meaning, Meaning::Sequence(id) if Some(id) == main);
-            if symbol.is_used || is_main || name.starts_with('_') {
-                continue;
-            }
-            let (kind, use_) = match symbol.meaning {
-                Meaning::Sequence(_) | Meaning::Action(_) => (symbol.meaning.kind(), "called"),
-                Meaning::Error(_) => ("an error", "thrown"),
-                Meaning::Global(..) | Meaning::Local(..) => ("a variable", "read"),
-                Meaning::Item(_) | Meaning::Counter(_) => continue,
-                _ => (symbol.meaning.kind(), "used"),
-            };
-            let message = format!("`{name}` is {kind} that is never {use_}");
-            let at = format!("never {use_}");
-            self.reports.add(
-                warning(Code::Unused, symbol.name.span, message, at)
-                    .with_help(format!("leave it out, or call it `_{name}`")),
-            );
         }
     }
 }

@@ -73,6 +73,8 @@ impl<'s> Checker<'s> {
             | Written::SkipInReverse(_)
             | Written::ReplaceInReverse { .. } => return Some(self.block_with_reverse(written)),
             Written::Throw(name) => return self.throw(*name, span),
+            // What it says has been heard before.
+            Written::Allow(_) => return None,
         };
         Some((self.done(kind, span), true))
     }
@@ -307,7 +309,10 @@ impl<'s> Checker<'s> {
             (_, None) => {
                 let at = Span::new(name.span.start, name.span.start);
                 diagnostic
-                    .with_help(format!("declare it where it is first set: `var {} = ..`", name.value))
+                    .with_help(format!(
+                        "declare it where it is first set: `var {} = ..`",
+                        name.value
+                    ))
                     .replacing(at, "var ")
             }
         });
@@ -326,6 +331,7 @@ impl<'s> Checker<'s> {
                 return None;
             }
         };
+        self.names.mark_assigned(name.value);
         let reason = match found.meaning {
             Meaning::Global(global, of_type) => return Some((Place::Global(global), of_type)),
             Meaning::Local(local, of_type) if of_type != ValueType::Item => {

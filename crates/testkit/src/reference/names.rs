@@ -39,7 +39,7 @@ impl<'p> Names<'p> {
                     names.joints.push((joints.name.value, values));
                 }
                 Item::ItemDeclaration(item) => names.items.push(item),
-                Item::Cell(_) | Item::Variable(_) => {}
+                Item::Cell(_) | Item::Variable(_) | Item::Allow(_) => {}
             }
         }
         names
