@@ -66,40 +66,6 @@ macro_rules! codes {
     };
 }
 
-/// The index of all codes, as a page: docs/codes.md.
-#[must_use]
-pub fn page() -> String {
-    let mut page = String::from(
-        "# Diagnostics\n\nEvery message of the compiler has a code, which never means anything \
-         else. `obverse explain CODE` shows what stands here. This page is written by `UPDATE=1 \
-         cargo test --test codes`.\n\nA warning that is meant is allowed, for the statement or \
-         declaration that follows, or for the file:\n\n```\nallow W0001 \"the operator reads it\"\n\
-         allow W0001 in file \"taught poses, of which each program uses some\"\n```\n\n\
-         `obverse check --deny warnings` lets no warning pass that is not allowed.\n\n\
-         | code | |\n| --- | --- |\n",
-    );
-    for code in Code::ALL {
-        let anchor = code.as_str().to_lowercase();
-        page += &format!("| [{code}](#{anchor}) | {} |\n", code.title());
-    }
-    for code in Code::ALL {
-        page += &format!("\n## {code}\n\n**{}.** {}\n", capital(code.title()), code.reason());
-        for (word, example) in [("Wrong", code.wrong_example()), ("Right", code.right_example())] {
-            // Examples of what is too large would be.
-            if !example.is_empty() && example.len() < 400 {
-                page += &format!("\n{word}:\n\n```\n{example}\n```\n");
-            }
-        }
-    }
-    page
-}
-
-fn capital(text: &str) -> String {
-    let mut letters = text.chars();
-    let first = letters.next().map(|first| first.to_ascii_uppercase());
-    first.into_iter().chain(letters).collect()
-}
-
 impl std::str::FromStr for Code {
     type Err = UnknownCode;
 
@@ -296,8 +262,8 @@ codes! {
         right "error jam { recover by reversing to checkpoint ready }\n\
                sequence main { checkpoint ready throw jam }"
     UnknownCode "E0110" "a code that is no warning's"
-        why "`allow` takes the code of a warning, `W0001` for example. Errors cannot be allowed. It \
-             holds for the statement or declaration that follows; with `in file`, for the file. \
+        why "`allow` takes the code of a warning, `W0001` for example. Errors cannot be allowed. \
+             It holds for the statement or declaration that follows; with `in file`, for the file. \
              docs/codes.md lists the codes."
         wrong "allow E0001 \"it is read by the operator\"\n\
                sequence main { wait 1 s }"
@@ -567,9 +533,9 @@ codes! {
         right "io blink { toggle 0 }\n\
                sequence main { io blink wait 1 s }"
     ConstantCondition "W0012" "a condition that is always the same"
-        why "The condition reads nothing that could change, so that one of the ways is never taken: \
-             a variable may be meant, or a reading. A loop for ever is written `loop { .. }`. A loop \
-             that counts upwards does nothing where its last value is below its first."
+        why "The condition reads nothing that could change, so that one of the ways is never \
+             taken: a variable may be meant, or a reading. A loop for ever is written `loop { .. \
+             }`. A loop that counts upwards does nothing where its last value is below its first."
         wrong "sequence main { while 1 > 2 { wait 1 s } }"
         right "sequence main { while input 3 { wait 1 s } }"
 }

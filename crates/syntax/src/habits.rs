@@ -86,7 +86,7 @@ const ROWS: &[Row] = &[
     line(&["waittime", "delay", "pause", "dwell"], "write `wait 0.5 s`, with the unit"),
     line(
         &["print", "tpwrite", "textmsg", "popup", "println", "printf", "msgnotify"],
-        "nothing is printed by a program: what it does is told by the run itself; `checkpoint NAME` \
+        "nothing is printed by a program: the run itself tells what it does; `checkpoint NAME` \
          names a place",
     ),
     line(

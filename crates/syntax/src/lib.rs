@@ -10,6 +10,7 @@ pub mod diagnostic;
 mod expectation;
 mod foreign;
 mod habits;
+pub mod index;
 mod lexer;
 mod nearest;
 mod nesting;
