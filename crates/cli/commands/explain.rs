@@ -44,7 +44,9 @@ fn list(is_json: bool) {
     match is_json {
         true => tell(Code::ALL.iter().map(|code| of_code(*code))),
         false => {
-            Code::ALL.iter().for_each(|code| write::line(&format!("{code}  {}", code.title())))
+            for code in Code::ALL {
+                write::line(&format!("{code}  {}", code.title()));
+            }
         }
     }
 }

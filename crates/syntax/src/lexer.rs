@@ -30,6 +30,8 @@ pub(crate) struct Lexer<'s, 'k> {
     pending: Option<Token>,
     /// Blocks of another language that are open.
     foreign_blocks: u32,
+    /// Whether a name has stood where only a statement can.
+    has_stray_word: bool,
     /// The word of the declaration whose clauses are being read, and the braces open in it.
     clauses: Option<(Token, u32)>,
 }
@@ -53,6 +55,7 @@ impl<'s, 'k> Lexer<'s, 'k> {
             has_ended: false,
             pending: None,
             foreign_blocks: 0,
+            has_stray_word: false,
             clauses: None,
         }
     }
@@ -64,6 +67,7 @@ impl<'s, 'k> Lexer<'s, 'k> {
             Token::Integer | Token::Real => Some(self.number(token)),
             Token::MalformedNumber => Some(self.malformed_number()),
             Token::Name if self.begins_statement() => self.first_word(),
+            Token::Name if self.is_step() => self.step(),
             _ if token.begins_statement() => self.statement_word(token),
             _ if token.is_word() => Some(self.word(token)),
             Token::UnclosedText => {
@@ -181,7 +185,14 @@ impl<'s, 'k> Lexer<'s, 'k> {
             let habit = (!is_awaited).then(habits::end_of_block);
             return self.leave_out(line, habit.as_ref());
         }
-        let Some(habit) = habits::of(word, line) else { return Some(self.word(Token::Name)) };
+        let Some(habit) = habits::of(word, line) else {
+            // It can only be a mistake; after an earlier one the parser goes on here.
+            if !std::mem::replace(&mut self.has_stray_word, true) {
+                return Some(self.word(Token::Name));
+            }
+            self.pending = Some(Token::Name);
+            return Some(Token::Semicolon);
+        };
         match habit.then {
             Then::NextLine => self.leave_out(line, Some(&habit)),
             Then::InBlock => {
@@ -209,6 +220,7 @@ impl<'s, 'k> Lexer<'s, 'k> {
             self.sink.line_ends();
         }
         self.previous = Token::Semicolon;
+        self.previous_end = self.tokens.span().end;
         None
     }
 
@@ -230,8 +242,30 @@ impl<'s, 'k> Lexer<'s, 'k> {
         let is_new =
             matches!(self.previous, Token::OpenBrace | Token::CloseBrace | Token::Semicolon);
         let is_name = self.previous.is_free() && self.before_previous.wants_name();
-        let is_over = is_name || self.previous.ends_statement();
+        // `++` is of no expression here.
+        let is_step = (self.before_previous, self.previous) == (Token::Plus, Token::Plus);
+        let is_over = is_name || is_step || self.previous.ends_statement();
         is_new || is_over && !self.is_same_line() && !self.nesting.is_in_expression()
+    }
+
+    /// `for i from 0 to last step 2 {`: left out as far as the block.
+    fn step(&mut self) -> Option<Token> {
+        self.sink.report(tree::step(self.span()));
+        let rest = self.rest();
+        let end = rest.find(['{', '\r', '\n']).unwrap_or(rest.len());
+        self.tokens.bump(end);
+        self.sink.line_ends();
+        None
+    }
+
+    /// Whether a name cannot be what another language gives a loop's step by.
+    fn is_step(&self) -> bool {
+        let follows =
+            matches!(self.previous, Token::Name | Token::Integer | Token::CloseParenthesis);
+        self.tokens.slice() == "step"
+            && follows
+            && self.is_same_line()
+            && !is_before_assignment(self.rest())
     }
 
     fn word(&mut self, token: Token) -> Token {
@@ -276,6 +310,9 @@ impl<'s, 'k> Lexer<'s, 'k> {
 
     /// A number, with the unit or the wrong unit after it.
     fn number(&mut self, token: Token) -> Token {
+        if token == Token::Integer && self.is_decimal_comma() {
+            return self.decimal_comma();
+        }
         let rest = self.rest();
         let word_and_on = rest.trim_start_matches([' ', '\t']);
         let blanks = rest.len() - word_and_on.len();
@@ -296,6 +333,28 @@ impl<'s, 'k> Lexer<'s, 'k> {
             return Token::BadQuantity;
         }
         token
+    }
+
+    /// Whether `,5` follows where no list is.
+    fn is_decimal_comma(&self) -> bool {
+        let bytes = self.rest().as_bytes();
+        !self.nesting.is_in_expression()
+            && matches!(bytes, [b',', digit, ..] if digit.is_ascii_digit())
+    }
+
+    /// `0,5`
+    fn decimal_comma(&mut self) -> Token {
+        let comma = self.span().end;
+        let digits = self.rest()[1..].bytes().take_while(u8::is_ascii_digit).count();
+        self.tokens.bump(1 + digits);
+        let message = "a number has a point, and no comma";
+        let instead = self.tokens.slice().replace(',', ".");
+        self.sink.report(
+            Diagnostic::error(Code::MalformedNumber, self.span(), message, "a decimal comma")
+                .with_help(format!("write `{instead}`"))
+                .replacing(Span::new(comma, comma + 1), "."),
+        );
+        self.number(Token::Real)
     }
 
     /// `5.`, `.5` or, as in other languages, the range `0..9`.
@@ -431,8 +490,12 @@ impl<'s, 'k> Lexer<'s, 'k> {
 
     /// Whether only blanks stand between this token and the one before.
     fn is_same_line(&self) -> bool {
-        let between = self.source.get(self.previous_end..self.tokens.span().start).unwrap_or("");
-        between.bytes().all(|byte| byte == b' ' || byte == b'\t')
+        self.between().bytes().all(|byte| byte == b' ' || byte == b'\t')
+    }
+
+    /// What stands between this token and the one before.
+    fn between(&self) -> &'s str {
+        self.source.get(self.previous_end..self.tokens.span().start).unwrap_or("")
     }
 }
 
@@ -454,6 +517,9 @@ impl Iterator for Lexer<'_, '_> {
                     token
                 }
             };
+            if self.sink.awaits_line_end() && self.between().contains(['\n', '\r']) {
+                self.sink.line_ends();
+            }
             match self.nesting.observe(token) {
                 Ok(()) => {}
                 Err(refusal) => {
@@ -469,6 +535,9 @@ impl Iterator for Lexer<'_, '_> {
                 return Some(Err(Stopped));
             }
             self.follow_clauses(token);
+            if self.previous == Token::OpenBrace && token.begins_statement() {
+                self.sink.block_has_statements();
+            }
             let Span { start, end } = self.span();
             (self.before_previous, self.previous) = (self.previous, token);
             self.previous_end = end as usize;

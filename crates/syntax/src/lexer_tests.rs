@@ -8,6 +8,8 @@ fn lex(source: &str) -> (Vec<(Token, &str)>, Vec<Code>) {
     let tokens = Lexer::new(source, &sink)
         .map_while(Result::ok)
         .map(|(start, token, end)| (token, &source[start as usize..end as usize]))
+        // One that is not written helps the parser to go on.
+        .filter(|(token, text)| *token != Semicolon || *text == ";")
         .collect();
     let codes = sink.into_parts().0.into_iter().map(|diagnostic| diagnostic.code).collect();
     (tokens, codes)

@@ -24,7 +24,9 @@ pub(crate) fn explain(
     let worded = diagnostics.len();
     if !errors.is_empty() {
         let surroundings = Surroundings::new(source);
-        for error in errors {
+        let unclosed = diagnostics.iter().find(|one| one.code == Code::UnclosedBracket);
+        let unclosed = unclosed.map(|one| one.primary.span);
+        for error in errors.iter().filter(|error| !follows_from(unclosed, error)) {
             let mistake = Mistake {
                 error,
                 expectation: Expectation::new(&error.expected),
@@ -35,6 +37,7 @@ pub(crate) fn explain(
     }
     leave_out_consequences(source, &mut diagnostics, worded, errors);
     blame_one_brace(&mut diagnostics);
+    blame_brace_too_many(source, &mut diagnostics);
     diagnostics.sort_by_key(|diagnostic| diagnostic.primary.span);
     say_once(source, &mut diagnostics);
     if diagnostics.len() >= MAX_MISTAKES
@@ -43,6 +46,15 @@ pub(crate) fn explain(
         last.notes.push(format!("no more than {MAX_MISTAKES} mistakes are shown"));
     }
     diagnostics
+}
+
+/// Whether a token that cannot stand here could, were a block closed before it.
+fn follows_from(unclosed: Option<Span>, error: &SyntaxError) -> bool {
+    let goes_on = matches!(
+        error.found,
+        Some(Token::CloseBrace | Token::In | Token::Else | Token::Ending | Token::Reverse)
+    );
+    goes_on && unclosed.is_some_and(|opening| opening < error.span)
 }
 
 /// What the lexer says of signs behind a token that the parser could not take, on its line, is left
@@ -67,6 +79,29 @@ fn leave_out_consequences(
         };
         index > worded || !is_of_lexer(diagnostic.code) || !errors.iter().any(|e| is_behind(&e))
     });
+}
+
+/// A brace too many ends a sequence early, and what follows stands outside: what is reported is the
+/// brace that is indented otherwise than what it closes, and nothing of what follows from it.
+fn blame_brace_too_many(source: &str, diagnostics: &mut Vec<Diagnostic>) {
+    let is_missing = |one: &&Diagnostic| one.code == Code::MissingBlock;
+    let missing = diagnostics.iter().filter(is_missing).map(|one| one.primary.span).min();
+    if let Some(missing) = missing {
+        // Its closing brace may be there.
+        diagnostics.retain(|one| {
+            let follows = matches!(one.code, Code::UnmatchedBracket | Code::StatementOutside);
+            !follows || one.primary.span < missing
+        });
+    }
+    let is_unmatched = |one: &Diagnostic| one.code == Code::UnmatchedBracket;
+    let Some(unmatched) = diagnostics.iter().position(is_unmatched) else { return };
+    let place = diagnostics[unmatched].primary.span;
+    let Some(suspect) = Surroundings::new(source).likely_too_many(place.start) else { return };
+    diagnostics[unmatched].primary.span = suspect;
+    diagnostics[unmatched].primary.text = "this may be the one too many".to_owned();
+    diagnostics[unmatched].labels =
+        vec![Label { span: place, text: "no bracket is open here".to_owned() }];
+    diagnostics.retain(|one| one.code != Code::StatementOutside || one.primary.span < suspect);
 }
 
 /// The same slip again and again on a line, `[0°, 90°]`, is said once.
@@ -258,8 +293,13 @@ impl Mistake<'_> {
     fn unexpected(&self, found: Token) -> Diagnostic {
         let expected = self.expectation.describe();
         let message = format!("expected {expected}, found {}", self.found());
-        let mut diagnostic =
-            self.error(Code::UnexpectedToken, message, format!("expected {expected}"));
+        let mut diagnostic = match self.end_before() {
+            Some(end) => {
+                let at = format!("expected {expected} after this");
+                Diagnostic::error(Code::UnexpectedToken, end, message, at)
+            }
+            None => self.error(Code::UnexpectedToken, message, format!("expected {expected}")),
+        };
         if let Some(opening) = self.opening_that_matters() {
             diagnostic = diagnostic.with_label(opening, "opened here");
         }
@@ -274,6 +314,14 @@ impl Mistake<'_> {
             diagnostic.suggestion = advice.suggestion;
         }
         diagnostic
+    }
+
+    /// The token before, if what is missing is missing behind it, at the end of its line.
+    fn end_before(&self) -> Option<Span> {
+        let start = self.error.span.start;
+        let may_end = self.expectation.allows_statement() || self.expectation.allows("}");
+        let is_next = self.surroundings.begins_line(start) && !may_end;
+        self.surroundings.before(start).filter(|_| is_next).map(|token| token.span)
     }
 
     /// The bracket whose closing one is among what is expected, if it is of an expression.

@@ -2,6 +2,7 @@
 //! from being reported many times. How it is worded is said elsewhere.
 
 use crate::ast::Item;
+use crate::codes::Code;
 use crate::diagnostic::Diagnostic;
 use crate::span::Span;
 use crate::token::Token;
@@ -51,6 +52,8 @@ pub(crate) struct Sink<'s> {
     /// The end of the last mistake, while nothing whole has been read since: a further mistake of
     /// grammar is then taken for a consequence.
     aftermath: Cell<Option<u32>>,
+    /// Whether that mistake was the lexer's, which has put something right in its place.
+    is_lexical: Cell<bool>,
     /// Where the mistake begins that was found last.
     newest: Cell<u32>,
     /// The end of the mistake that reaches furthest.
@@ -74,6 +77,7 @@ pub(crate) enum BlockKind {
 impl<'s> Sink<'s> {
     /// A mistake that its finder has worded.
     pub(crate) fn report(&self, diagnostic: Diagnostic) {
+        self.is_lexical.set(is_put_right(diagnostic.code));
         self.newest.set(diagnostic.primary.span.start);
         self.unsettle(diagnostic.primary.span.end);
         if self.count_one() {
@@ -89,8 +93,14 @@ impl<'s> Sink<'s> {
         self.unsettle(end);
     }
 
+    /// Whether the end of the line matters: a mistake of the lexer reaches no further.
+    pub(crate) fn awaits_line_end(&self) -> bool {
+        self.is_lexical.get()
+    }
+
     /// The line ends on which a mistake was found that reaches no further.
     pub(crate) fn line_ends(&self) {
+        self.is_lexical.set(false);
         self.aftermath.set(None);
     }
 
@@ -128,6 +138,7 @@ impl<'s> Sink<'s> {
         let is_after = self.aftermath.get().is_some() && self.newest.get() <= span.start;
         let is_consequence = is_after || self.block.get() == BlockKind::Foreign;
         self.unsettle(end.max(span.start));
+        self.is_lexical.set(false);
         if !is_consequence && self.count_one() {
             self.syntax_errors.borrow_mut().push(SyntaxError { span, found, expected });
         }
@@ -162,6 +173,14 @@ impl<'s> Sink<'s> {
             self.block.set(BlockKind::Unknown);
         }
         outer
+    }
+
+    /// The block in hand begins with a word that only statements begin with.
+    pub(crate) fn block_has_statements(&self) {
+        if self.block.get() == BlockKind::Unknown {
+            self.block.set(BlockKind::Expected);
+            self.aftermath.set(None);
+        }
     }
 
     /// That block ends, and with it what followed from the mistake, unless its line goes on.
@@ -227,6 +246,18 @@ impl<'s> Sink<'s> {
         self.count.set(self.count.get() + usize::from(has_room));
         has_room
     }
+}
+
+/// Whether the lexer puts something that fits in the place of what is wrong.
+fn is_put_right(code: Code) -> bool {
+    matches!(
+        code,
+        Code::UnexpectedCharacter
+            | Code::MalformedNumber
+            | Code::UnknownUnit
+            | Code::ForeignOperator
+            | Code::ForeignWord
+    )
 }
 
 /// Whether something new begins with what follows: on a new line, or after `;`.

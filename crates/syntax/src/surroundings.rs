@@ -108,6 +108,22 @@ impl<'s> Surroundings<'s> {
         Some(suspect.unwrap_or(innermost))
     }
 
+    /// The closing brace before an offset that is probably one too many: it begins a line that is
+    /// indented otherwise than that of the one it closes.
+    pub(crate) fn likely_too_many(&self, offset: u32) -> Option<Span> {
+        let mut open = Vec::new();
+        for token in self.until(offset) {
+            let Some(opening) = follow(&mut open, *token) else { continue };
+            let (opened, closed) = (opening.span.start, token.span.start);
+            let is_other_line = self.line_start(opened) != self.line_start(closed);
+            let is_odd = self.indentation(opened) != self.indentation(closed);
+            if is_other_line && self.begins_line(closed) && is_odd {
+                return Some(token.span);
+            }
+        }
+        None
+    }
+
     /// What is said of the bracket that probably lacks its closing one, at the end of the text.
     pub(crate) fn unclosed_at(&self, end: u32) -> Option<Diagnostic> {
         let opening = self.likely_unclosed()?;

@@ -198,7 +198,7 @@ impl Token {
         )
     }
 
-    /// Whether a name follows it and ends the statement. Reserved words alone: they are no names.
+    /// Whether a name follows it and ends the statement. Reserved words alone: none is a name.
     pub(crate) fn wants_name(self) -> bool {
         use Token::*;
         matches!(self, To | Io | Call | Advance | Throw | Checkpoint)

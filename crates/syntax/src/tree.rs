@@ -97,9 +97,7 @@ pub(crate) fn bad_quantity<'s>(
     let is_of_number = number.len() + word.len() == (end - start) as usize;
     let is_base = number == "0" && word.starts_with(['x', 'X', 'b', 'B', 'o', 'O']);
     sink.report(if word == "step" {
-        let message = "a loop that counts goes by one";
-        Diagnostic::error(Code::ForeignLoop, span, message, "no step can be given")
-            .with_help("compute in the loop: `var n = i * 2`, or write `while`")
+        step(span)
     } else if is_of_number && (word.starts_with('_') || is_base) {
         let message = "numbers are written in decimal digits, without groups";
         Diagnostic::error(Code::MalformedNumber, span, message, "not a part of a number")
@@ -107,6 +105,13 @@ pub(crate) fn bad_quantity<'s>(
         unknown_unit(word, span, &["times"])
     });
     ExpressionKind::Missing
+}
+
+/// A loop that counts is given a step.
+pub(crate) fn step(span: Span) -> Diagnostic {
+    let message = "a loop that counts goes by one";
+    Diagnostic::error(Code::ForeignLoop, span, message, "no step can be given")
+        .with_help("compute in the loop: `var n = i * 2`, or write `while`")
 }
 
 /// A word stands where a unit should; `others` are words that could have been meant as well.
@@ -142,7 +147,7 @@ fn split_quantity(text: &str) -> (&str, &str) {
     let bytes = text.as_bytes();
     // `e` is of the number where digits or a sign and digits follow: `1e5 mm`, not `3 eel`.
     let is_number = |index: usize| match bytes[index] {
-        b'0'..=b'9' | b'.' => true,
+        b'0'..=b'9' | b'.' | b',' => true,
         b'+' | b'-' => true,
         b'e' | b'E' => {
             let next = bytes.get(index + 1);

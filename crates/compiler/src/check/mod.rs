@@ -88,6 +88,9 @@ impl<'s> Checker<'s> {
         let before = self.names.find(name.value);
         // What is meant by a use of it is not known, so that neither is called unused.
         self.names.mark_used(name.value);
+        let is_again = !matches!(before, Found::Nothing);
+        // Of which type it is meant to be is not known.
+        let meaning = if is_again { meaning.of_unknown_type() } else { meaning };
         if let Some(first) = self.names.declare(name, meaning) {
             let kind = match before {
                 Found::Here(symbol) | Found::Outside(symbol) => symbol.meaning.kind(),

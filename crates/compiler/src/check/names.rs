@@ -65,6 +65,15 @@ impl Meaning {
         }
     }
 
+    /// The same, if it is a variable, of no type that anything follows from.
+    pub(crate) fn of_unknown_type(self) -> Self {
+        match self {
+            Self::Global(id, _) => Self::Global(id, ValueType::Unknown),
+            Self::Local(id, _) => Self::Local(id, ValueType::Unknown),
+            _ => self,
+        }
+    }
+
     fn is_of_frame(self) -> bool {
         matches!(self, Self::Local(..) | Self::Counter(_) | Self::Position(_))
     }
