@@ -4,11 +4,14 @@
 //! law sees; a failure prints the number of the program, and `LAW_SEED` runs that one alone.
 
 use arbitrary::{Result, Unstructured};
-use obverse_testkit::{laws, machine_laws};
+use obverse_testkit::{front_laws, laws, machine_laws};
 use std::collections::BTreeSet;
 
 /// How many modules each law sees.
 const RUNS: u64 = 4_000;
+
+/// How many programs the laws of the front end alone see, which are cheap.
+const FRONT_RUNS: u64 = 10_000;
 
 /// Random bytes that follow from a number.
 fn bytes(seed: u64) -> Vec<u8> {
@@ -25,9 +28,14 @@ fn bytes(seed: u64) -> Vec<u8> {
 
 /// The law holds of every program, and of at least so many of a hundred it says something.
 fn holds(name: &str, law: fn(&mut Unstructured<'_>) -> Result<bool>, least: u64) {
+    holds_over(RUNS, name, law, least);
+}
+
+/// The same, of so many programs.
+fn holds_over(runs: u64, name: &str, law: fn(&mut Unstructured<'_>) -> Result<bool>, least: u64) {
     let number = |variable: &str| std::env::var(variable).ok().and_then(|text| text.parse().ok());
     let alone: Option<u64> = number("LAW_SEED");
-    let runs = number("LAW_RUNS").unwrap_or(RUNS);
+    let runs = number("LAW_RUNS").unwrap_or(runs);
     let mut compared = 0;
     for seed in alone.map_or(0..runs, |seed| seed..seed + 1) {
         let held = std::panic::catch_unwind(|| law(&mut Unstructured::new(&bytes(seed))));
@@ -62,6 +70,16 @@ laws! {
         turns >= 12
         round_trips >= 100;
     laws: compiles >= 100 agrees_forward >= 95 agrees_backward >= 75;
+}
+
+#[test]
+fn a_program_cut_off_anywhere_gives_messages() {
+    holds_over(FRONT_RUNS, "cut_off_anywhere", front_laws::cut_off_anywhere, 90);
+}
+
+#[test]
+fn line_ends_mean_nothing() {
+    holds("line_ends_mean_nothing", front_laws::line_ends_mean_nothing, 100);
 }
 
 #[test]

@@ -5,6 +5,7 @@
 
 pub mod altered;
 pub mod code;
+pub mod front_laws;
 pub mod hostile;
 pub mod large;
 pub mod laws;
