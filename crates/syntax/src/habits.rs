@@ -210,6 +210,13 @@ fn motion(rest: &str, how: &str) -> Habit {
         );
         return said(help, Then::NextLine);
     }
+    if goes_on.starts_with('(') {
+        let help = format!(
+            "an offset is a move of its own: `move to NAME{how}`, and before or after it `move 50 \
+             mm up in base`"
+        );
+        return said(help, Then::NextLine);
+    }
     let instead = format!("move to {name}{how}");
     let help = format!("write `{instead}`; speed and tool are settings: `speed slow`, `tool NAME`");
     Habit { help, instead: Some(instead), then: Then::NextLine }
@@ -280,6 +287,7 @@ mod tests {
         assert_eq!(instead("movel", "(p10)").as_deref(), Some("move to p10 linearly"));
         assert_eq!(instead("movel", "(p[0.1, 0.2])"), None);
         assert_eq!(instead("PTP", " {X 10}"), None);
+        assert_eq!(instead("MoveL", " Offs(p10, 0, 0, 50)"), None);
     }
 
     #[test]

@@ -228,7 +228,13 @@ impl<'s, 'k> Lexer<'s, 'k> {
     fn report_habit(&self, length: usize, habit: &Habit) {
         let start = self.span().start;
         let span = Span::new(start, start + length as u32);
-        let message = format!("`{}` is a word of another language", self.tokens.slice());
+        let word = self.tokens.slice();
+        let is_capital =
+            habit.instead.as_ref().is_some_and(|instead| word.eq_ignore_ascii_case(instead));
+        let message = match is_capital {
+            true => format!("`{word}` is not written with capitals here"),
+            false => format!("`{word}` is a word of another language"),
+        };
         let at = "not a statement of this language";
         let mut diagnostic = Diagnostic::error(Code::ForeignWord, span, message, at);
         diagnostic.help = Some(habit.help.clone());
