@@ -198,7 +198,7 @@ impl Token {
         )
     }
 
-    /// Whether a name follows it and ends the statement. Reserved words alone: none is a name.
+    /// Whether a name follows it that ends the statement. Reserved words alone are among them.
     pub(crate) fn wants_name(self) -> bool {
         use Token::*;
         matches!(self, To | Io | Call | Advance | Throw | Checkpoint)
