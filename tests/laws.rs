@@ -5,7 +5,9 @@
 //! runs that one alone.
 
 use arbitrary::{Result, Unstructured};
-use obverse_testkit::{files, laws, machine_laws, preflight_laws, reach_laws, word_laws};
+use obverse_testkit::{
+    files, front_laws, laws, machine_laws, preflight_laws, reach_laws, word_laws,
+};
 use std::collections::BTreeSet;
 
 /// How many modules each law sees.
@@ -13,6 +15,9 @@ const RUNS: u64 = 4_000;
 
 /// How many modules and how many programs the laws of reach see.
 const REACH_RUNS: u64 = 10_000;
+
+/// How many programs the laws of the front end alone see, which are cheap.
+const FRONT_RUNS: u64 = 10_000;
 
 /// Random bytes that follow from a number.
 fn bytes(seed: u64) -> Vec<u8> {
@@ -107,6 +112,16 @@ fn reach_is_met() {
         said += all.len();
     }
     assert!(met * 100 >= said * 75, "of {said} horizons that points may have, {met} were met");
+}
+
+#[test]
+fn a_program_cut_off_anywhere_gives_messages() {
+    holds_of(FRONT_RUNS, "cut_off_anywhere", front_laws::cut_off_anywhere, 90);
+}
+
+#[test]
+fn line_ends_mean_nothing() {
+    holds("line_ends_mean_nothing", front_laws::line_ends_mean_nothing, 100);
 }
 
 #[test]

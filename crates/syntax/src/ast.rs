@@ -39,6 +39,21 @@ pub enum Item<'s> {
     Variable(VariableDeclaration<'s>),
     /// `sequence main { … }`, or `action pick(part: item) { … }`
     Sequence(Sequence<'s>),
+    /// `allow W0001 "why"`: for the declaration that follows.
+    Allow(Allow<'s>),
+}
+
+/// A warning that is meant.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Allow<'s> {
+    /// The code of the warning, as written.
+    pub code: Name<'s>,
+    /// `in file`: wherever it stands in the file, not only in what follows.
+    pub in_file: bool,
+    /// Why it is meant.
+    pub reason: Spanned<&'s str>,
+    /// The whole of it.
+    pub span: Span,
 }
 
 /// A name for a line of the workcell: an entry of an I/O map.
@@ -593,6 +608,57 @@ pub enum StatementKind<'s> {
     },
     /// `throw NAME`
     Throw(Name<'s>),
+    /// `allow W0001 "why"`: for the statement that follows.
+    Allow(Allow<'s>),
+}
+
+impl<'s> Statement<'s> {
+    /// What it allows, if that is all that it does.
+    #[must_use]
+    pub fn allow(&self) -> Option<&Allow<'s>> {
+        match &self.kind {
+            StatementKind::Allow(allow) => Some(allow),
+            _ => None,
+        }
+    }
+
+    /// The blocks in it, in the order of the text.
+    #[must_use]
+    pub fn blocks(&self) -> [Option<&Block<'s>>; 2] {
+        match &self.kind {
+            StatementKind::If { then, otherwise, .. } => [Some(then), otherwise.as_ref()],
+            StatementKind::WaitUntil { otherwise, .. } => [otherwise.as_ref(), None],
+            StatementKind::While { body, .. }
+            | StatementKind::Repeat { body, .. }
+            | StatementKind::For { body, .. }
+            | StatementKind::Loop(body) => [Some(body), None],
+            StatementKind::Speed { block, .. } | StatementKind::Tool { block, .. } => {
+                [block.as_ref(), None]
+            }
+            StatementKind::Irreversible { block, .. }
+            | StatementKind::SkipInReverse(block)
+            | StatementKind::KeepInReverse(block)
+            | StatementKind::WithInReverse { block, .. } => [Some(block), None],
+            StatementKind::ReplaceInReverse { block, replacement } => {
+                [Some(block), Some(replacement)]
+            }
+            StatementKind::Move { .. }
+            | StatementKind::Advance(_)
+            | StatementKind::Call { .. }
+            | StatementKind::Io(_)
+            | StatementKind::Wait(_)
+            | StatementKind::Primitive(_)
+            | StatementKind::Variable(_)
+            | StatementKind::Remember(_)
+            | StatementKind::Assign { .. }
+            | StatementKind::Break
+            | StatementKind::Return
+            | StatementKind::Checkpoint(_)
+            | StatementKind::Barrier(_)
+            | StatementKind::Throw(_)
+            | StatementKind::Allow(_) => [None, None],
+        }
+    }
 }
 
 /// What may be otherwise going back.

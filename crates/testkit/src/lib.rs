@@ -6,7 +6,9 @@
 pub mod altered;
 pub mod code;
 pub mod files;
+pub mod front_laws;
 pub mod hostile;
+pub mod large;
 pub mod laws;
 pub mod ledger;
 pub mod logged;

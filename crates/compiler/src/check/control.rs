@@ -56,6 +56,7 @@ impl<'s> Checker<'s> {
         header: Span,
     ) -> (Statement, bool) {
         let condition = self.condition(condition, "`if`");
+        self.warn_of_constant(&condition, "leave it out, with the block that is never run");
         let hoists = self.frame.take_hoists();
         let named = self.frame.named;
         let then = self.block(then);
@@ -84,6 +85,7 @@ impl<'s> Checker<'s> {
     ) -> (Statement, bool) {
         let header = Span::new(start, condition.span.end);
         let condition = self.prepared_condition(condition);
+        self.warn_of_constant(&condition.value, "a loop for ever is written `loop { .. }`");
         let entered = entered_when.map(|written| self.assertion(written, "`entered when`"));
         let (body, _) = self.body(body, header);
         if let (Some(written), false) = (entered_when, body.falls_through) {
@@ -105,6 +107,7 @@ impl<'s> Checker<'s> {
         body: &ast::Block<'s>,
         header: Span,
     ) -> (Statement, bool) {
+        self.warn_of_empty_count(&first, &last);
         let hoists = self.frame.take_hoists();
         let (computed, held) = (first.size().0 + last.size().0, first.size().1 + last.size().1);
         if computed > MAX_COMPUTED {

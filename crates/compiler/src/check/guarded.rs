@@ -204,7 +204,9 @@ impl<'s> Checker<'s> {
         let words: Vec<&str> = text.unwrap_or_default().split_whitespace().collect();
         let reason = format!("{} requires {}", self.frame.name, words.join(" "));
         let reason = self.reason(Spanned::new(&reason, span));
-        (self.prepared(condition, &Need::new(ValueType::Bool, "`requires`")), reason)
+        let condition = self.prepared(condition, &Need::new(ValueType::Bool, "`requires`"));
+        self.warn_of_constant(&condition.value, "leave the clause out, or ask for a reading");
+        (condition, reason)
     }
 
     fn move_distance(&mut self, written: &ast::Expression<'s>) -> Prepared {
