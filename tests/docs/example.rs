@@ -3,7 +3,7 @@
 //!
 //! ```text
 //! obv                    a whole program
-//! obv declarations       stands beside the prelude of its page
+//! obv declarations       stands beside the prelude of its page, with a `main` or without
 //! obv statements         stands in a sequence, after the prelude
 //! obv prelude            what the others of the page take for granted, from here on
 //! obv .. wrong E0203     what gives these codes and no others
@@ -69,7 +69,8 @@ fn whole(block: &Block<'_>, prelude: &str) -> String {
     if block.says("statements") {
         format!("{prelude}\nsequence main {{\n{text}}}\n")
     } else if block.says("declarations") {
-        format!("{prelude}\n{text}\nsequence main {{ }}\n")
+        let main = if text.contains("sequence main {") { "" } else { "sequence main { }\n" };
+        format!("{prelude}\n{text}\n{main}")
     } else {
         text
     }
