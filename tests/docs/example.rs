@@ -7,7 +7,6 @@
 //! obv statements         stands in a sequence, after the prelude
 //! obv prelude            what the others of the page take for granted, from here on
 //! obv .. wrong E0203     what gives these codes and no others
-//! obv .. unrun           is compiled alone: a run of it would not end, or not with this workcell
 //! obv from FILE          is that file of the project, to the letter
 //! ```
 //!
@@ -51,7 +50,7 @@ pub(crate) fn check(block: &Block<'_>, prelude: &str, reader: &Reader) -> Result
         return Err(format!("gives {found:?}:\n{:#?}", compiled.diagnostics));
     }
     match compiled.module {
-        Some(module) if !block.says("unrun") => {
+        Some(module) => {
             let named = module.cell.as_deref();
             let Some(cell) = named.map_or(Some(Cell::bare()), |name| cell(name, reader)) else {
                 return Err("names a workcell that is not there".to_owned());

@@ -5,6 +5,9 @@ use std::path::{Path, PathBuf};
 
 pub(crate) const ROOT: &str = env!("CARGO_MANIFEST_DIR");
 
+/// Pages that are written by a program, and held by its test.
+const GENERATED: [&str; 1] = ["docs/codes.md"];
+
 /// A document.
 pub(crate) struct Page {
     /// Its path within the project.
@@ -29,12 +32,14 @@ impl Page {
         Self { name: name.to_owned(), text }
     }
 
-    /// Every page that is for people who use the language.
+    /// Every page that somebody has written for people who use the language.
     pub(crate) fn all() -> Vec<Self> {
         let entries = std::fs::read_dir(Path::new(ROOT).join("docs")).expect("documents");
         let names = entries.map(|entry| entry.expect("an entry").file_name());
         let names = names.map(|name| format!("docs/{}", name.to_string_lossy()));
-        let mut names: Vec<String> = names.filter(|name| name.ends_with(".md")).collect();
+        let is_written =
+            |name: &String| name.ends_with(".md") && !GENERATED.contains(&name.as_str());
+        let mut names: Vec<String> = names.filter(is_written).collect();
         names.push("README.md".to_owned());
         names.sort();
         names.iter().map(|name| Self::read(name)).collect()
