@@ -302,9 +302,6 @@ impl Instr {
     /// Whether control never passes from this instruction to the next.
     #[must_use]
     pub fn never_falls_through(&self) -> bool {
-        matches!(
-            self,
-            Self::Jump { .. } | Self::Return {} | Self::Halt {} | Self::ForkLeave { .. }
-        )
+        matches!(self, Self::Jump { .. } | Self::Return {} | Self::Halt {} | Self::ForkLeave { .. })
     }
 }

@@ -6,6 +6,7 @@
 
 use crate::response::{Response, is_for_caller, response};
 use crate::tree::{Block, Body, Program, StatementKind};
+use obverse_bytecode::ErrorDeclaration;
 use obverse_isa::{ErrorId, FunctionId};
 use obverse_syntax::span::Span;
 
@@ -141,6 +142,19 @@ impl Effects {
     /// The errors that a call of a function leaves to be responded to.
     pub(crate) fn left_by(&self, function: FunctionId) -> &[ErrorId] {
         &self.functions[function.index()].for_caller
+    }
+
+    /// The errors that are responded to after a statement; `declared` are those of the program.
+    pub(crate) fn due(&self, kind: &StatementKind, declared: &[ErrorDeclaration]) -> Vec<ErrorId> {
+        let is_own = |error: &ErrorId| !is_for_caller(&declared[error.index()]);
+        match kind {
+            StatementKind::Throw(error) => Some(*error).filter(is_own).into_iter().collect(),
+            StatementKind::Advance(guarded) => {
+                self.left_by(*guarded).iter().copied().filter(is_own).collect()
+            }
+            StatementKind::Call(callee, _) => self.left_by(*callee).to_vec(),
+            _ => Vec::new(),
+        }
     }
 
     /// Whether a function may make its caller leave.

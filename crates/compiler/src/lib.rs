@@ -7,6 +7,7 @@
 mod check;
 mod effects;
 mod fold;
+mod forks;
 mod keyframes;
 mod lower;
 mod recursion;
@@ -16,6 +17,7 @@ mod reversal;
 mod tree;
 mod types;
 mod units;
+mod uses;
 
 use effects::Effects;
 use obverse_bytecode::Module;
@@ -41,6 +43,7 @@ pub fn compile(source_name: &str, source: &str) -> Compiled {
     let module = program.filter(|_| is_whole).and_then(|program| {
         let effects = Effects::of(&program);
         reversal::check(&program, &effects, &mut reports);
+        forks::check(&program, &effects, &mut reports);
         recursion::check(&program, &effects, &mut reports);
         match reports.has_errors() {
             true => None,

@@ -22,7 +22,7 @@ impl Lower<'_> {
 
     fn statement(&mut self, statement: &Statement) {
         use StatementKind::{
-            Advance, Barrier, Break, Call, Checkpoint, For, If, Io, Irreversible, Loop, Move,
+            Advance, Barrier, Break, Call, Checkpoint, For, Fork, If, Io, Irreversible, Loop, Move,
             Output, Remember, Return, Reversed, Set, SetFor, Store, Throw, Update, Wait, WaitInput,
             While,
         };
@@ -43,6 +43,7 @@ impl Lower<'_> {
             Update { place, subtracts, value } => self.update(*place, *subtracts, value),
             Remember(slot) => self.push(Instr::Remember { slot: *slot }),
             If { .. } | While { .. } | For { .. } | Loop(_) => self.control(statement),
+            Fork(branches) => self.fork(branches),
             Break => self.leave_loop(),
             Return => self.leave(Way::Out),
             Set(value) => self.set(*value),
@@ -190,7 +191,7 @@ impl Lower<'_> {
     }
 
     /// A block with something to put right when it is left on the way.
-    fn scoped(&mut self, scope: Scope, block: &Block) -> Option<Scope> {
+    pub(super) fn scoped(&mut self, scope: Scope, block: &Block) -> Option<Scope> {
         self.frame.scopes.push(scope);
         self.block(block);
         self.frame.scopes.pop()
@@ -199,7 +200,7 @@ impl Lower<'_> {
     /// A block with a reverse of its own: all ways out of it lead over its end.
     fn reversed(&mut self, block: &Block, replacement: Option<FunctionId>) {
         let from = Label(self.code.push(Instr::BlockBegin {}));
-        self.begin_ways(block);
+        self.begin_ways(std::slice::from_ref(block));
         let scope = self.scoped(Scope::Reversed(Vec::new()), block);
         let Some(Scope::Reversed(ways)) = scope else { return };
         let (marks, ways): (Vec<Mark>, Vec<Way>) = ways.into_iter().unzip();
