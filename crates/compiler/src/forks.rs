@@ -223,7 +223,7 @@ impl Fork<'_> {
     fn function_name(&self, function: FunctionId) -> String {
         let function = self.program.function(function);
         match function.kind {
-            FunctionKind::Replacement => "the block `in reverse`".to_owned(),
+            FunctionKind::Replacement => "this block".to_owned(),
             _ => format!("`{}`", function.name),
         }
     }

@@ -151,9 +151,9 @@ impl Uses {
             StatementKind::Advance(callee) => self.call(*callee, "advances", span),
             StatementKind::Io(callee, counterpart) => {
                 self.call(*callee, "does", span);
-                counterpart.iter().for_each(|callee| self.call(*callee, "in reverse does", span));
+                counterpart.iter().for_each(|callee| self.call(*callee, "runs in reverse", span));
             }
-            StatementKind::Reversed(_, Some(callee)) => self.call(*callee, "in reverse does", span),
+            StatementKind::Reversed(_, Some(callee)) => self.call(*callee, "runs in reverse", span),
             StatementKind::Call(callee, arguments) => {
                 self.call(*callee, "calls", span);
                 arguments.iter().for_each(|argument| self.expression(argument));

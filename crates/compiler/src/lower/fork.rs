@@ -1,21 +1,25 @@
 //! Forks as tasks: the branches one behind the other, and how an error leaves all of them.
 //!
 //! What leaves a branch says where to in a local, goes to the end of the branch, leaves the fork
-//! there, and goes on behind its join, where nothing of the fork is under way any more. A branch
-//! that nothing leaves has none of this.
+//! there, and goes on behind its join, where nothing of the fork is under way any more. What the
+//! other branches were in the middle of is put right there: settings are what they were before the
+//! fork, and what cannot be taken back is not. A branch that nothing leaves has none of this.
 
 use super::Lower;
 use super::frame::Scope;
 use super::leave::Way;
 use super::statement::PREFIX;
+use crate::effects::Carried;
 use crate::tree::Block;
 use obverse_bytecode::Mark;
-use obverse_isa::{Instr, LocalId};
+use obverse_isa::{Instr, LocalId, ReasonId, Setting, Type};
 
 impl Lower<'_> {
     /// Branches that take turns.
     pub(super) fn fork(&mut self, branches: &[Block]) {
         let way = self.begin_ways(branches);
+        let held = self.held(branches);
+        let kept = self.keep_settings(held);
         let fork = self.code.jump(|join| Instr::Fork { join });
         let mut leaving = Vec::new();
         let mut ways = Vec::new();
@@ -31,7 +35,61 @@ impl Lower<'_> {
         }
         let join = self.code.join(fork, |from| Instr::ForkJoin { from });
         leaving.into_iter().for_each(|mark| self.code.lead(mark, join));
+        if let Some(way) = way {
+            self.put_right(way, &kept, held.irreversible);
+        }
         self.go_on(&ways);
+    }
+
+    /// What branches may be in the middle of when another one leaves the fork.
+    fn held(&self, branches: &[Block]) -> Carried {
+        let leavers = branches.iter().filter(|branch| self.may_be_left(branch)).count();
+        let is_held = |branch: &&Block| leavers > usize::from(self.may_be_left(branch));
+        let held = branches.iter().filter(is_held);
+        held.fold(Carried::default(), |all, branch| all.and(self.effects.of_statements(branch)))
+    }
+
+    /// Keep the settings that would not be what they were.
+    fn keep_settings(&mut self, held: Carried) -> Vec<(Setting, LocalId)> {
+        let settings = [
+            (held.sets_speed, Setting::Speed, "speed_before", Type::Speed),
+            (held.sets_tool, Setting::Tool, "tool_before", Type::Tool),
+        ];
+        let needed = settings.into_iter().filter(|(is_set, ..)| *is_set);
+        needed
+            .map(|(_, setting, name, of_type)| {
+                let local = self.hidden(name, of_type);
+                self.keep(setting, local);
+                (setting, local)
+            })
+            .collect()
+    }
+
+    /// Behind the join, if the fork was left.
+    fn put_right(
+        &mut self,
+        way: LocalId,
+        kept: &[(Setting, LocalId)],
+        irreversible: Option<ReasonId>,
+    ) {
+        if kept.is_empty() && irreversible.is_none() {
+            return;
+        }
+        let stay = self.unless_left(way);
+        for &(setting, local) in kept {
+            self.restore(setting, local);
+        }
+        if let Some(reason) = irreversible {
+            self.push(Instr::Irreversible { reason });
+        }
+        self.join_one(stay);
+    }
+
+    /// A jump that is taken if nothing leads out of the fork.
+    fn unless_left(&mut self, way: LocalId) -> Mark {
+        self.push(Instr::PushLocal { local: way });
+        self.push(Instr::PushInt { value: 0 });
+        self.code.jump(|target| Instr::JumpUnlessNe { prefix: PREFIX, target })
     }
 
     /// A branch up to its end; the ways that lead there from within it.
@@ -49,9 +107,7 @@ impl Lower<'_> {
 
     /// At the end of a branch: leave the fork if a way leads out of it.
     fn leave_fork(&mut self, way: LocalId) -> Mark {
-        self.push(Instr::PushLocal { local: way });
-        self.push(Instr::PushInt { value: 0 });
-        let stay = self.code.jump(|target| Instr::JumpUnlessNe { prefix: PREFIX, target });
+        let stay = self.unless_left(way);
         let leave = self.code.jump(|join| Instr::ForkLeave { join });
         self.frame.is_reached = false;
         self.join_one(stay);

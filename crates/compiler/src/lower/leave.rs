@@ -118,16 +118,19 @@ impl Lower<'_> {
     /// The beginning of closed blocks: nothing leads out of them yet. The local that says what
     /// does, if something may.
     pub(super) fn begin_ways(&mut self, blocks: &[Block]) -> Option<LocalId> {
-        let mut may_leave = false;
-        blocks.iter().for_each(|block| {
-            block.each_statement(&mut |statement| may_leave |= self.may_leave(statement));
-        });
-        may_leave.then(|| {
+        blocks.iter().any(|block| self.may_be_left(block)).then(|| {
             let local = self.way_local();
             self.push(Instr::PushInt { value: 0 });
             self.push(Instr::StoreLocal { prefix: PREFIX, local });
             local
         })
+    }
+
+    /// Whether something may lead out of a closed block.
+    pub(super) fn may_be_left(&self, block: &Block) -> bool {
+        let mut may_leave = false;
+        block.each_statement(&mut |statement| may_leave |= self.may_leave(statement));
+        may_leave
     }
 
     fn may_leave(&self, statement: &Statement) -> bool {
