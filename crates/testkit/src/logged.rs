@@ -27,6 +27,7 @@ pub struct Logged {
     /// What it was told to do.
     pub log: Vec<Command>,
     last: MotionReport,
+    motions: u64,
 }
 
 impl Logged {
@@ -35,12 +36,13 @@ impl Logged {
     pub fn new(seed: u64) -> Self {
         let ledger = Ledger::new(seed);
         let last = ledger.last_motion();
-        Self { ledger, log: Vec::new(), last }
+        Self { ledger, log: Vec::new(), last, motions: 0 }
     }
 
-    /// Whether the motion that is logged now meets something, if it feels for it.
+    /// Whether the motion that is counted last meets something, if it feels for it: whatever other
+    /// devices were told meanwhile.
     fn meets_something(&self) -> bool {
-        (self.ledger.seed ^ self.log.len() as u64).is_multiple_of(3)
+        (self.ledger.seed ^ self.motions).is_multiple_of(3)
     }
 }
 
@@ -51,6 +53,7 @@ impl Arm for Logged {
 
     fn execute(&mut self, motion: &Motion) -> Result<MotionReport, Fault> {
         self.log.push(Command::Execute(*motion));
+        self.motions += 1;
         let start = self.ledger.joints;
         self.last = self.ledger.execute(motion)?;
         if let Some(limit_n) = motion.force_limit_n.filter(|_| self.meets_something()) {

@@ -8,6 +8,7 @@ const NOTHING: Options = Options {
     allow_overrides: false,
     allow_errors: false,
     allow_traps: false,
+    allow_forks: false,
     max_statements: 80,
 };
 
@@ -34,7 +35,7 @@ fn no_bytes_give_a_program() {
 
 #[test]
 fn what_is_not_allowed_is_not_there() {
-    let words = ["barrier", "irreversible", "in reverse", "} reverse", "throw", "error"];
+    let words = ["barrier", "irreversible", "in reverse", "} reverse", "throw", "error", "fork"];
     let all = texts(Options::default()).concat();
     let none = texts(NOTHING).concat();
     for word in words {
@@ -76,6 +77,8 @@ fn every_statement_is_made_sometimes() {
         "repeat ",
         "for ",
         "loop {",
+        "fork {",
+        "} and {",
         "break",
         "return",
         "speed slow {",
