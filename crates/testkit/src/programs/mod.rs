@@ -119,7 +119,7 @@ impl<'g, 'u> Generator<'g, 'u> {
 
     fn program(&mut self) -> Result<String> {
         let mut items = self.data()?;
-        self.has_forks = self.options.allow_forks && self.one_in(5)?;
+        self.has_forks = self.options.allow_forks && self.one_in(4)?;
         for index in 0..self.below(4)? {
             let is_recursive = self.one_in(3)?;
             let word = if self.one_in(2)? { "action" } else { "sequence" };
