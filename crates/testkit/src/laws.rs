@@ -175,19 +175,21 @@ impl<'s> Case<'s> {
     fn retraces(&self, seed: u64) -> bool {
         let mut cell = Logged::new(seed);
         let mut machine = self.machine(&cell);
-        let mut way: Vec<(Mark, Outside)> = Vec::new();
+        let mut way = Vec::new();
         loop {
-            way.push((machine.mark(), outside(&cell)));
+            way.push(place(&machine, &cell));
             match machine.step(Direction::Forward, &mut cell, &mut ()) {
                 Ok(()) | Err(Stop::Raised { .. }) => {}
                 Err(_) => break,
             }
         }
-        let is_one = way.len() > 1;
-        let log = cell.log.clone();
+        // A trap has led back to before its statement.
+        let end = way.iter().rposition(|there| *there == place(&machine, &cell));
+        self.require(end.is_some(), || "the end was not on the way".to_owned());
+        way.truncate(end.map_or(0, |end| end + 1));
+        let (steps, log) = (way.len(), cell.log.clone());
         while let Some(there) = way.pop() {
-            let here = (machine.mark(), outside(&cell));
-            self.same("the state", "in reverse", &here, &there);
+            self.same("the place", "in reverse", &place(&machine, &cell), &there);
             match machine.step(Direction::Reverse, &mut cell, &mut ()) {
                 Ok(()) => {}
                 Err(Stop::AtStart) if way.is_empty() => {}
@@ -201,7 +203,7 @@ impl<'s> Case<'s> {
             machine.run(Direction::Forward, Limits::NONE, &mut cell, &mut ())
         {}
         self.same("the commands", "of a run", &cell.log, &log);
-        is_one
+        steps > 1
     }
 
     /// What must hold.
@@ -289,12 +291,9 @@ fn by_device(log: &[Command]) -> ByDevice {
     (arm, outputs, waits)
 }
 
-/// Joints, outputs, and what is held.
-type Outside = ([u64; 6], Vec<bool>, Option<u16>);
-
-fn outside(cell: &Logged) -> Outside {
-    let outputs = (0..cell.output_count()).map(|bit| cell.output(bit)).collect();
-    (cell.joints().bits(), outputs, cell.held().map(|item| item.0))
+/// How far a run is, and the state there.
+fn place(machine: &Machine<'_>, cell: &Logged) -> (Mark, u64) {
+    (machine.mark(), machine.digest(cell))
 }
 
 /// The program gave it its name.
