@@ -295,7 +295,7 @@ fn the_station_tests_while_the_arm_moves() {
     let one_after_another =
         text.replace("  fork {", "  if true {").replace("  } and {", "  }\n  if true {");
     let (in_turns_s, in_a_row_s) = (duration_s(&text), duration_s(&one_after_another));
-    assert!(in_turns_s + 3.0 < in_a_row_s, "{in_turns_s} s in turns, {in_a_row_s} s in a row");
+    assert!(in_turns_s + 1.5 < in_a_row_s, "{in_turns_s} s in turns, {in_a_row_s} s in a row");
 }
 
 #[test]
