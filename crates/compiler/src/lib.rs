@@ -9,6 +9,7 @@
 mod check;
 mod effects;
 mod fold;
+mod forks;
 mod keyframes;
 mod load;
 mod lower;
@@ -22,6 +23,7 @@ mod shortfall;
 mod tree;
 mod types;
 mod units;
+mod uses;
 
 pub use load::{Loader, MAX_IMPORT_DEPTH, MAX_IMPORTED};
 
@@ -68,6 +70,7 @@ fn compile_loaded(loaded: &Loaded) -> (Option<Module>, Vec<Diagnostic>) {
     let module = program.filter(|_| is_whole).and_then(|program| {
         let effects = Effects::of(&program);
         reversal::check(&program, &effects, &mut reports);
+        forks::check(&program, &effects, &mut reports);
         recursion::check(&program, &effects, &mut reports);
         match reports.has_errors() {
             true => None,

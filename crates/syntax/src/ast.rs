@@ -543,6 +543,8 @@ pub enum StatementKind<'s> {
     },
     /// `loop { … }`: for ever, until `break` or an error.
     Loop(Block<'s>),
+    /// `fork { … } and { … }`: the branches in turns, until all are done.
+    Fork(Vec<Block<'s>>),
     /// `break`: out of the innermost loop.
     Break,
     /// `return`: out of the sequence.

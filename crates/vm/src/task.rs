@@ -1,11 +1,12 @@
 //! Forks: branches of a program that run as tasks, in turns.
 //!
 //! A task is a place in the code and the calls under way there; the frame of the function that
-//! forks is everybody's. A turn ends when something was commanded of the workcell, or its branch
-//! has ended; then the next branch goes on that has not. The tape keeps one switch a turn: whose it
-//! was, and how many steps it took. So the turns are taken back in their order, whatever rule they
-//! were taken by. While an error is pending, and in a block with a reverse of its own, the turn
-//! does not end: the other tasks are held where they are, between statements.
+//! forks is everybody's. A turn ends when something was commanded of the workcell and what came of
+//! it has been read, or its branch has ended; then the next branch goes on that has not. The tape
+//! keeps one switch a turn: whose it was, and how many steps it took. So the turns are taken back
+//! in their order, whatever rule they were taken by. While an error is pending, and in a block with
+//! a reverse of its own, the turn does not end: the other tasks are held where they are, between
+//! statements.
 //!
 //! Knows nothing of what the statements of a turn do.
 
@@ -167,8 +168,15 @@ impl Machine<'_> {
     /// After an instruction: the turn ends if it was an act, and nothing holds the other tasks.
     pub(crate) fn end_turn(&mut self, instr: Instr) {
         let Some(fork) = self.state.forks.last() else { return };
-        let is_act =
-            instr.info().family.commands_workcell() || matches!(instr, Instr::WaitInput { .. });
+        let reads_motion = |instr: Instr| {
+            matches!(instr, Instr::SenseDistance { .. } | Instr::SensePeakForce { .. })
+        };
+        // What came of a motion is read before anybody else moves.
+        let is_read = reads_motion(self.program.module().code[self.state.place.pc]);
+        let is_act = instr.info().family.commands_workcell()
+            || matches!(instr, Instr::WaitInput { .. })
+            || reads_motion(instr);
+        let is_act = is_act && !is_read;
         let is_held = !self.state.raised.is_empty()
             || self.state.open_blocks != fork.open_blocks
             || self.state.compensations.len() != fork.compensations;
