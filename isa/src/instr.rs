@@ -299,6 +299,13 @@ impl Instr {
         }
     }
 
+    /// Whether a branch of a fork has had its turn when it has run this: it has commanded the
+    /// workcell, or waited for it.
+    #[must_use]
+    pub fn ends_turn(&self) -> bool {
+        self.info().family.commands_workcell() || matches!(self, Self::WaitInput { .. })
+    }
+
     /// Whether control never passes from this instruction to the next.
     #[must_use]
     pub fn never_falls_through(&self) -> bool {
