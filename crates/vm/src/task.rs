@@ -165,22 +165,15 @@ impl Machine<'_> {
         Ok(())
     }
 
-    /// After an instruction: the turn ends if it was an act, and nothing holds the other tasks.
+    /// After an instruction: the turn ends if it ends one, and nothing holds the other tasks.
     pub(crate) fn end_turn(&mut self, instr: Instr) {
         let Some(fork) = self.state.forks.last() else { return };
-        let reads_motion = |instr: Instr| {
-            matches!(instr, Instr::SenseDistance { .. } | Instr::SensePeakForce { .. })
-        };
         // What came of a motion is read before anybody else moves.
-        let is_read = reads_motion(self.program.module().code[self.state.place.pc]);
-        let is_act = instr.info().family.commands_workcell()
-            || matches!(instr, Instr::WaitInput { .. })
-            || reads_motion(instr);
-        let is_act = is_act && !is_read;
+        let is_read = self.program.module().code[self.state.place.pc].reads_motion();
         let is_held = !self.state.raised.is_empty()
             || self.state.open_blocks != fork.open_blocks
             || self.state.compensations.len() != fork.compensations;
-        if is_act && !is_held && fork.next().is_some() {
+        if instr.ends_turn() && !is_read && !is_held && fork.next().is_some() {
             self.pass_turn();
         }
     }
