@@ -21,7 +21,7 @@ use obverse_tape::record::{self, HeldTask, Switch};
 use std::collections::BTreeMap;
 
 /// The most forks that may be open in one another.
-const MAX_FORKS: usize = 64;
+pub const MAX_FORKS: usize = 64;
 
 /// A fork that is open.
 #[derive(Clone, Debug)]
@@ -55,13 +55,16 @@ pub(crate) struct Task {
 
 /// The branches of a fork: the first instruction of each, and its last.
 #[derive(Clone, Debug)]
-pub(crate) struct Branches {
-    pub(crate) join: u32,
-    pub(crate) ends: Vec<(u32, u32)>,
+pub struct Branches {
+    /// Where the branches come together.
+    pub join: u32,
+    /// One a branch: its first instruction, and that at which it ends.
+    pub ends: Vec<(u32, u32)>,
 }
 
 /// The forks of a program by their first instruction.
-pub(crate) fn branches(code: &[Instr]) -> BTreeMap<u32, Branches> {
+#[must_use]
+pub fn branches(code: &[Instr]) -> BTreeMap<u32, Branches> {
     let mut forks = BTreeMap::new();
     // Of each fork that is open: where it is, the branches so far, where the next begins.
     let mut open: Vec<(u32, Branches, u32)> = Vec::new();
@@ -165,22 +168,15 @@ impl Machine<'_> {
         Ok(())
     }
 
-    /// After an instruction: the turn ends if it was an act, and nothing holds the other tasks.
+    /// After an instruction: the turn ends if it ends one, and nothing holds the other tasks.
     pub(crate) fn end_turn(&mut self, instr: Instr) {
         let Some(fork) = self.state.forks.last() else { return };
-        let reads_motion = |instr: Instr| {
-            matches!(instr, Instr::SenseDistance { .. } | Instr::SensePeakForce { .. })
-        };
         // What came of a motion is read before anybody else moves.
-        let is_read = reads_motion(self.program.module().code[self.state.place.pc]);
-        let is_act = instr.info().family.commands_workcell()
-            || matches!(instr, Instr::WaitInput { .. })
-            || reads_motion(instr);
-        let is_act = is_act && !is_read;
+        let is_read = self.program.module().code[self.state.place.pc].reads_motion();
         let is_held = !self.state.raised.is_empty()
             || self.state.open_blocks != fork.open_blocks
             || self.state.compensations.len() != fork.compensations;
-        if is_act && !is_held && fork.next().is_some() {
+        if instr.ends_turn() && !is_read && !is_held && fork.next().is_some() {
             self.pass_turn();
         }
     }
