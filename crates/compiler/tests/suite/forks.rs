@@ -64,7 +64,9 @@ sequence main { fork { var n = 1 call count(n) n = 2 } and { var n = 1 call coun
 fn what_runs_after_one_another_is_not_shared() {
     check("sequence main { fork { set 1 high } and { set 2 high } set 1 low set 2 low }", &[]);
     check(
-        "sequence main { fork { fork { set 1 high } and { set 2 high } set 1 low } and { set 3 low } }",
+        "sequence main {
+  fork { fork { set 1 high } and { set 2 high } set 1 low } and { set 3 low }
+}",
         &[],
     );
 }
@@ -237,7 +239,9 @@ fn a_branch_that_nothing_leaves_has_no_way_out() {
 action fails { if input 1 { throw dead } } action notes { if input 1 { throw noted } }";
     let with = |branch: &str| {
         leaves(&format!(
-            "{errors} sequence main {{ fork {{ {branch} }} and {{ toggle 1 }} call fails call notes }}"
+            "{errors} sequence main {{
+               fork {{ {branch} }} and {{ toggle 1 }} call fails call notes
+             }}"
         ))
     };
     assert_eq!(with("toggle 2"), 0);
