@@ -469,10 +469,10 @@ codes! {
         right "sequence main { fork { toggle 1 } and { toggle 2 } return }"
     SharedDevice "E0503" "two branches of a fork that use the same device"
         why "Branches run in turns, one command at a time, so that two that command the same \
-             device would be mixed. The arm is one device, with its speed, its tool and its readings \
-             `force`, `distance` and `holding`; so is each output, and so are the random numbers. \
-             What a branch calls counts as its own, and so do the recoveries of its errors and \
-             what is run in its place in reverse."
+             device would be mixed. The arm is one device, with its speed, its tool and its \
+             readings `force`, `distance` and `holding`; so is each output, and so are the random \
+             numbers. What a branch calls counts as its own, and so do the recoveries of its \
+             errors and what is run in its place in reverse."
         wrong "sequence main { fork { set 1 high } and { wait 1 s set 1 low } }"
         right "sequence main { fork { set 1 high } and { wait 1 s set 2 low } }"
     SharedVariable "E0504" "two branches of a fork that assign the same variable"
