@@ -277,3 +277,15 @@ fn what_a_held_branch_was_in_is_put_right() {
     assert_eq!(put_right("tool probe { speed fast { move 1 mm up } }"), (2, 0));
     assert_eq!(put_right("call weld"), (0, 1));
 }
+
+#[test]
+fn forks_that_call_too_much_are_refused_once() {
+    let mut source = "sequence s0 { toggle 1 }\n".to_owned();
+    for index in 1..4000 {
+        let branch = format!("call s{}", index - 1);
+        source += &format!("sequence s{index} {{ fork {{ {branch} }} and {{ wait 1 s }} }}\n");
+    }
+    let found = findings(&(source + "sequence main { call s3999 }"));
+    assert_eq!(found.len(), 1, "{found:?}");
+    assert!(found[0].starts_with("E0310"), "{found:?}");
+}
