@@ -43,10 +43,8 @@ pub(crate) struct Carried {
     barrier: Option<Span>,
     /// Why a block of it cannot be taken back.
     pub(crate) irreversible: Option<ReasonId>,
-    /// Whether the speed is another one meanwhile.
-    pub(crate) sets_speed: bool,
-    /// Whether the tool is.
-    pub(crate) sets_tool: bool,
+    /// By setting: whether it is another one meanwhile.
+    pub(crate) sets: [bool; Setting::ALL.len()],
 }
 
 impl Carried {
@@ -56,16 +54,14 @@ impl Carried {
             leaves: self.leaves || other.leaves,
             barrier: self.barrier.or(other.barrier),
             irreversible: self.irreversible.or(other.irreversible),
-            sets_speed: self.sets_speed || other.sets_speed,
-            sets_tool: self.sets_tool || other.sets_tool,
+            sets: std::array::from_fn(|setting| self.sets[setting] || other.sets[setting]),
         }
     }
 
     fn of_setting(setting: Setting) -> Self {
-        match setting {
-            Setting::Speed => Self { sets_speed: true, ..Self::default() },
-            Setting::Tool => Self { sets_tool: true, ..Self::default() },
-        }
+        let mut carried = Self::default();
+        carried.sets[setting as usize] = true;
+        carried
     }
 }
 
@@ -85,7 +81,9 @@ impl Effects {
                 let thrown = thrown.into_iter().flatten().map(|(error, _)| error);
                 let effect = &mut effects.functions[id.index()];
                 effect.for_caller = distinct(thrown.collect());
-                effect.carried.sets_speed = guarded.speed.is_some();
+                if guarded.speed.is_some() {
+                    effect.carried = Carried::of_setting(Setting::Speed);
+                }
             }
         }
         for (id, function) in program.numbered() {

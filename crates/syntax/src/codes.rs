@@ -2,7 +2,7 @@
 //!
 //! A code is stable: a row may be reworded, but its code is never given another meaning nor used
 //! again. `E00xx` is text and grammar, `E01xx` names, `E02xx` types and units, `E03xx` statements,
-//! structure and errors, `E04xx` reversal, `E05xx` forks, `W0xxx` warnings. It knows nothing of how
+//! structure and errors, `E04xx` reversal, `E06xx` forks, `W0xxx` warnings. It knows nothing of how
 //! a mistake is found or shown.
 
 macro_rules! codes {
@@ -455,19 +455,19 @@ codes! {
         wrong "sequence main { skip in reverse { barrier \"glued\" } }"
         right "sequence main { skip in reverse { wait 1 s } barrier \"glued\" }"
 
-    // E05xx: forks.
-    ForkBranches "E0501" "a fork that has not two to sixteen branches with something in each"
+    // E06xx: forks.
+    ForkBranches "E0601" "a fork that has not two to sixteen branches with something in each"
         why "`fork { .. } and { .. }` runs its branches in turns until all are done. One branch \
              alone, or an empty one, has nobody to take turns with."
         wrong "sequence main { fork { set 1 high wait 1 s } }"
         right "sequence main { fork { set 1 high wait 1 s } and { set 2 high wait 2 s } }"
-    LeavesFork "E0502" "a way out of a fork from one of its branches"
+    LeavesFork "E0602" "a way out of a fork from one of its branches"
         why "A fork is done when all its branches are. `break` leaves a loop within its branch, \
              and `return` a sequence that the branch calls, but not the branch: the others would \
              stand half-way. Only an error leaves a fork, since then the others are held."
         wrong "sequence main { fork { toggle 1 return } and { toggle 2 } }"
         right "sequence main { fork { toggle 1 } and { toggle 2 } return }"
-    SharedDevice "E0503" "two branches of a fork that use the same device"
+    SharedDevice "E0603" "two branches of a fork that use the same device"
         why "Branches run in turns, one command at a time, so that two that command the same \
              device would be mixed. The arm is one device, with its speed, its tool and its \
              readings `force`, `distance` and `holding`; so is each output, and so are the random \
@@ -475,7 +475,7 @@ codes! {
              errors and what is run in its place in reverse."
         wrong "sequence main { fork { set 1 high } and { wait 1 s set 1 low } }"
         right "sequence main { fork { set 1 high } and { wait 1 s set 2 low } }"
-    SharedVariable "E0504" "two branches of a fork that assign the same variable"
+    SharedVariable "E0604" "two branches of a fork that assign the same variable"
         why "Which of them comes last depends on whose turn it is when. Give each branch a \
              variable of its own, and put them together after the fork."
         wrong "sequence main { var n = 0 fork { n = 1 } and { n = 2 } if n > 0 { wait 1 s } }"
@@ -519,7 +519,7 @@ codes! {
                sequence main { call blink }"
         right "sequence blink { loop { toggle 0 wait 1 s } }\n\
                sequence main { call blink }"
-    ReadsOtherBranch "W0501" "a branch of a fork that reads what another assigns"
+    ReadsOtherBranch "W0601" "a branch of a fork that reads what another assigns"
         why "Which value it reads depends on whose turn it is when. The turns are the same in \
              every run of the same program in the same workcell, but a statement more in either \
              branch changes them. Read it after the fork, or have one branch do both."

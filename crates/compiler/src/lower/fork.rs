@@ -51,14 +51,11 @@ impl Lower<'_> {
 
     /// Keep the settings that would not be what they were.
     fn keep_settings(&mut self, held: Carried) -> Vec<(Setting, LocalId)> {
-        let settings = [
-            (held.sets_speed, Setting::Speed, "speed_before", Type::Speed),
-            (held.sets_tool, Setting::Tool, "tool_before", Type::Tool),
-        ];
-        let needed = settings.into_iter().filter(|(is_set, ..)| *is_set);
+        let needed = Setting::ALL.iter().copied().filter(|setting| held.sets[*setting as usize]);
         needed
-            .map(|(_, setting, name, of_type)| {
-                let local = self.hidden(name, of_type);
+            .map(|setting| {
+                let name = setting.name().replace('.', "_");
+                let local = self.hidden(&format!("{name}_before"), of_type(setting));
                 self.keep(setting, local);
                 (setting, local)
             })
@@ -112,5 +109,12 @@ impl Lower<'_> {
         self.frame.is_reached = false;
         self.join_one(stay);
         leave
+    }
+}
+
+fn of_type(setting: Setting) -> Type {
+    match setting {
+        Setting::Speed => Type::Speed,
+        Setting::Tool => Type::Tool,
     }
 }

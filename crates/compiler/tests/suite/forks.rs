@@ -33,7 +33,7 @@ fn each_device_is_of_one_branch() {
             );
             let found = findings(&source);
             assert_eq!(found.len(), 1, "{first} and {second}: {found:?}");
-            assert!(found[0].starts_with("E0503"), "{first} and {second}: {found:?}");
+            assert!(found[0].starts_with("E0603"), "{first} and {second}: {found:?}");
         }
     }
 }
@@ -75,7 +75,7 @@ fn what_runs_after_one_another_is_not_shared() {
 fn an_inner_fork_is_of_its_branch() {
     check(
         "sequence main { fork { fork { set 1 high } and { set 2 high } } and { set 2 low } }",
-        &[r#"E0503 1:71 "set 2 low""#],
+        &[r#"E0603 1:71 "set 2 low""#],
     );
 }
 
@@ -120,7 +120,7 @@ fn recursion_is_followed_once() {
         "action a(n: int) { if n > 0 { call b(n - 1) } toggle 1 }
 action b(n: int) { call a(n) }
 sequence main { fork { call a(3) } and { call b(3) } }",
-        &[r#"E0503 3:42 "call b(3)""#],
+        &[r#"E0603 3:42 "call b(3)""#],
     );
 }
 
