@@ -242,7 +242,8 @@ impl Fork<'_> {
                 format!("`{}`", self.program.module.globals[global.index()].name)
             }
             Resource::Local(local) => {
-                format!("`{}`", self.function.layout.locals[local.index()].name)
+                let known = self.function.layout.locals.get(local.index());
+                known.map_or("a variable".to_owned(), |local| format!("`{}`", local.name))
             }
         }
     }
