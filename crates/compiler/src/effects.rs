@@ -81,7 +81,9 @@ impl Effects {
                 let thrown = thrown.into_iter().flatten().map(|(error, _)| error);
                 let effect = &mut effects.functions[id.index()];
                 effect.for_caller = distinct(thrown.collect());
-                effect.carried.sets[Setting::Speed as usize] = guarded.speed.is_some();
+                if guarded.speed.is_some() {
+                    effect.carried = Carried::of_setting(Setting::Speed);
+                }
             }
         }
         for (id, function) in program.numbered() {

@@ -17,7 +17,7 @@ use obverse_syntax::span::Span;
 use std::collections::{BTreeMap, VecDeque};
 
 /// How many uses and calls are followed for all forks of a program.
-const MAX_FOLLOWED: usize = 20_000_000;
+const MAX_FOLLOWED: usize = 10_000_000;
 
 /// How many calls of a chain are shown.
 const MAX_SHOWN: usize = 6;
@@ -29,12 +29,18 @@ pub(crate) fn check(program: &Program, effects: &Effects, reports: &mut Reports)
     }
     let functions = of_functions(program, effects);
     let mut follower = Follower { program, effects, functions, followed: 0 };
+    let mut is_too_large = false;
     for (_, function) in program.numbered() {
         let Body::Block(block) = &function.body else { continue };
         block.each_statement(&mut |statement| {
-            if let StatementKind::Fork(branches) = &statement.kind {
-                let used = branches.iter().map(|branch| follower.branch(branch)).collect();
-                Fork { program, function, span: statement.span }.check(used, reports);
+            let StatementKind::Fork(branches) = &statement.kind else { return };
+            let used = branches.iter().map(|branch| follower.branch(branch)).collect();
+            let fork = Fork { program, function, span: statement.span };
+            match used {
+                Some(used) => fork.check(used, reports),
+                // What was too much for one is so for those that follow.
+                None if std::mem::replace(&mut is_too_large, true) => {}
+                None => fork.report_too_large(reports),
             }
         });
     }
@@ -142,8 +148,7 @@ struct First {
 
 impl Fork<'_> {
     /// Report what branches that use this share, each thing once.
-    fn check(&self, used: Option<Vec<Used>>, reports: &mut Reports) {
-        let Some(used) = used else { return self.report_too_large(reports) };
+    fn check(&self, used: Vec<Used>, reports: &mut Reports) {
         let mut first: BTreeMap<Resource, First> = BTreeMap::new();
         for how in [How::Commands, How::Writes, How::Reads] {
             for (branch, all) in used.iter().enumerate() {
@@ -237,13 +242,14 @@ impl Fork<'_> {
                 format!("`{}`", self.program.module.globals[global.index()].name)
             }
             Resource::Local(local) => {
-                format!("`{}`", self.function.layout.locals[local.index()].name)
+                let known = self.function.layout.locals.get(local.index());
+                known.map_or("a variable".to_owned(), |local| format!("`{}`", local.name))
             }
         }
     }
 
     fn report_too_large(&self, reports: &mut Reports) {
-        let message = "the forks of this program call too much to be checked";
+        let message = "the forks of this program call too much to be compared";
         reports.add(
             Diagnostic::error(Code::TooMany, self.span, message, "checked up to here")
                 .with_note(format!("{MAX_FOLLOWED} calls and uses are followed")),

@@ -494,22 +494,22 @@ codes! {
         wrong "sequence main { fork { set 1 high wait 1 s } }"
         right "sequence main { fork { set 1 high wait 1 s } and { set 2 high wait 2 s } }"
     LeavesFork "E0602" "a way out of a fork from one of its branches"
-        why "A fork is done when all its branches are. `break` leaves a loop within its branch, and \
-             `return` a sequence that the branch calls, but not the branch: the others would stand \
-             half-way. Only an error leaves a fork, since then the others are held."
+        why "A fork is done when all its branches are. `break` leaves a loop within its branch, \
+             and `return` a sequence that the branch calls, but not the branch: the others would \
+             stand half-way. Only an error leaves a fork, since then the others are held."
         wrong "sequence main { fork { toggle 1 return } and { toggle 2 } }"
         right "sequence main { fork { toggle 1 } and { toggle 2 } return }"
     SharedDevice "E0603" "two branches of a fork that use the same device"
-        why "Branches run in turns, one command at a time, so that two that command the same device \
-             would be mixed. The arm is one device, with its speed, its tool and its readings \
-             `force`, `distance` and `holding`; so is each output, and so are the random numbers. \
-             What a branch calls counts as its own, and so do the recoveries of its errors and \
-             what is run in its place in reverse."
+        why "Branches run in turns, one command at a time, so that two that command the same \
+             device would be mixed. The arm is one device, with its speed, its tool and its \
+             readings `force`, `distance` and `holding`; so is each output, and so are the random \
+             numbers. What a branch calls counts as its own, and so do the recoveries of its \
+             errors and what is run in its place in reverse."
         wrong "sequence main { fork { set 1 high } and { wait 1 s set 1 low } }"
         right "sequence main { fork { set 1 high } and { wait 1 s set 2 low } }"
     SharedVariable "E0604" "two branches of a fork that assign the same variable"
-        why "Which of them comes last depends on whose turn it is when. Give each branch a variable \
-             of its own, and put them together after the fork."
+        why "Which of them comes last depends on whose turn it is when. Give each branch a \
+             variable of its own, and put them together after the fork."
         wrong "sequence main { var n = 0 fork { n = 1 } and { n = 2 } if n > 0 { wait 1 s } }"
         right "sequence main { var a = 0 var b = 0 fork { a = 1 } and { b = 2 } \
                if a + b > 0 { wait 1 s } }"
@@ -596,9 +596,9 @@ codes! {
 
     // W06xx: warnings about forks.
     ReadsOtherBranch "W0601" "a branch of a fork that reads what another assigns"
-        why "Which value it reads depends on whose turn it is when. The turns are the same in every \
-             run of the same program in the same workcell, but a statement more in either branch \
-             changes them. Read it after the fork, or have one branch do both."
+        why "Which value it reads depends on whose turn it is when. The turns are the same in \
+             every run of the same program in the same workcell, but a statement more in either \
+             branch changes them. Read it after the fork, or have one branch do both."
         wrong "sequence main { var n = 0 fork { n = 1 } and { if n > 0 { wait 1 s } } }"
         right "sequence main { var n = 0 fork { n = 1 } and { wait 1 s } if n > 0 { wait 1 s } }"
 }

@@ -4,9 +4,9 @@
 //! A law panics where it does not hold, with the program and what is different, and else says
 //! whether there was anything to compare.
 //!
-//! The interpreter runs the branches of a fork one after the other, the machine in turns. Of programs
-//! with a fork, therefore, the end is compared and what each device was told, and going back is
-//! compared with the machine's own way forward.
+//! The interpreter runs the branches of a fork one after the other, the machine in turns. Of
+//! programs with a fork, therefore, the end is compared and what each device was told, and going
+//! back is compared with the machine's own way forward.
 
 use crate::logged::{Command, Logged};
 use crate::programs::{self, Options};

@@ -51,10 +51,11 @@ impl Lower<'_> {
 
     /// Keep the settings that would not be what they were.
     fn keep_settings(&mut self, held: Carried) -> Vec<(Setting, LocalId)> {
-        let needed = Setting::ALL.iter().filter(|setting| held.sets[**setting as usize]);
+        let needed = Setting::ALL.iter().copied().filter(|setting| held.sets[*setting as usize]);
         needed
-            .map(|&setting| {
-                let local = self.hidden("setting_before", setting.of_type());
+            .map(|setting| {
+                let name = setting.name().replace('.', "_");
+                let local = self.hidden(&format!("{name}_before"), setting.of_type());
                 self.keep(setting, local);
                 (setting, local)
             })

@@ -64,7 +64,9 @@ sequence main { fork { var n = 1 call count(n) n = 2 } and { var n = 1 call coun
 fn what_runs_after_one_another_is_not_shared() {
     check("sequence main { fork { set 1 high } and { set 2 high } set 1 low set 2 low }", &[]);
     check(
-        "sequence main { fork { fork { set 1 high } and { set 2 high } set 1 low } and { set 3 low } }",
+        "sequence main {
+  fork { fork { set 1 high } and { set 2 high } set 1 low } and { set 3 low }
+}",
         &[],
     );
 }
@@ -237,7 +239,9 @@ fn a_branch_that_nothing_leaves_has_no_way_out() {
 action fails { if input 1 { throw dead } } action notes { if input 1 { throw noted } }";
     let with = |branch: &str| {
         leaves(&format!(
-            "{errors} sequence main {{ fork {{ {branch} }} and {{ toggle 1 }} call fails call notes }}"
+            "{errors} sequence main {{
+               fork {{ {branch} }} and {{ toggle 1 }} call fails call notes
+             }}"
         ))
     };
     assert_eq!(with("toggle 2"), 0);
@@ -272,4 +276,16 @@ fn what_a_held_branch_was_in_is_put_right() {
     assert_eq!(put_right("advance slowly"), (1, 0));
     assert_eq!(put_right("tool probe { speed fast { move 1 mm up } }"), (2, 0));
     assert_eq!(put_right("call weld"), (0, 1));
+}
+
+#[test]
+fn forks_that_call_too_much_are_refused_once() {
+    let mut source = "sequence s0 { toggle 1 }\n".to_owned();
+    for index in 1..4000 {
+        let branch = format!("call s{}", index - 1);
+        source += &format!("sequence s{index} {{ fork {{ {branch} }} and {{ wait 1 s }} }}\n");
+    }
+    let found = findings(&(source + "sequence main { call s3999 }"));
+    assert_eq!(found.len(), 1, "{found:?}");
+    assert!(found[0].starts_with("E0310"), "{found:?}");
 }

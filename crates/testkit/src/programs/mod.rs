@@ -30,8 +30,8 @@ pub struct Options {
     pub allow_errors: bool,
     /// What may trap: divisions by something that may be zero, assertions that may be wrong.
     pub allow_traps: bool,
-    /// Forks; their branches never raise an error nor trap, so that they could as well run one after
-    /// the other.
+    /// Forks; their branches never raise an error nor trap, so that they could as well run one
+    /// after the other.
     pub allow_forks: bool,
     /// How many statements the text may have.
     pub max_statements: usize,
