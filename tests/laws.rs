@@ -75,7 +75,7 @@ laws! {
         write_ahead_with_blocks >= 60
         turns >= 12
         round_trips >= 100;
-    preflight_laws: foretells >= 60;
+    preflight_laws: foretells >= 60 foretells_of_modules >= 10;
     laws: compiles >= 100 agrees_forward >= 95 agrees_backward >= 75;
     files: files_are_one_program >= 60;
     word_laws:

@@ -9,7 +9,7 @@ use obverse_recovery::{Ending, drive};
 use obverse_sim::{Cell, Sim};
 use obverse_testkit::files::Folder;
 use obverse_vm::{Direction, Limits, Machine};
-use obverse_workcell::{ItemId, Items};
+use obverse_workcell::{Clock, DigitalIo, ItemId, Items};
 use serde_json::Value;
 use std::collections::BTreeSet;
 use std::fs;
@@ -45,6 +45,7 @@ const PROGRAMS: &[Expected] = &[
     identical("find_edge.obv"),
     Expected { file: "glue.obv", ends_with_error: &[], back: Back::StopsAt(21) },
     identical("handover.obv"),
+    identical("leak_test.obv"),
     Expected { file: "marking.obv", ends_with_error: &[], back: Back::StopsAt(46) },
     identical("peg_in_hole.obv"),
     Expected { file: "reversal_policy.obv", ends_with_error: &[0], back: Back::Identical },
@@ -162,6 +163,8 @@ fn the_language_is_shown() {
         ("screws.obv", "skip in reverse"),
         ("screws.obv", "} in reverse {"),
         ("sheets.obv", "reverse suck"),
+        ("leak_test.obv", "fork {"),
+        ("leak_test.obv", "} and {"),
         ("find_edge.obv", "call refine("),
         ("find_edge.obv", "tool probe {"),
         ("find_edge.obv", "speed very slow {"),
@@ -299,6 +302,34 @@ fn the_pin_comes_out_again_and_the_bushing_does_not() {
         panic!("{summary}")
     };
     assert_eq!(last["stops"][0]["line"], 76, "{summary}");
+}
+
+/// The jaws close and the pressure builds up while the arm is under way.
+#[test]
+fn the_station_tests_while_the_arm_moves() {
+    let duration_s = |text: &str| {
+        let compiled = obverse_compiler::compile("leak_test.obv", text);
+        let program = verify(compiled.module.expect("it compiles")).expect("a program");
+        let cell = fs::read_to_string(folder().join("leak_cell.toml")).expect("a workcell");
+        let mut sim = Sim::new(&Cell::parse(&cell).expect("a workcell"), 1);
+        let mut machine = Machine::new(&program, &sim).expect("a machine");
+        let end = drive(&mut machine, Direction::Forward, Limits::NONE, &mut sim, &mut ());
+        assert_eq!(end, Ending::Finished);
+        assert!(sim.output(4), "both are tested");
+        sim.now_s()
+    };
+    let text = source("leak_test.obv");
+    let one_after_another =
+        text.replace("  fork {", "  if true {").replace("  } and {", "  }\n  if true {");
+    let (in_turns_s, in_a_row_s) = (duration_s(&text), duration_s(&one_after_another));
+    assert!(in_turns_s + 1.5 < in_a_row_s, "{in_turns_s} s in turns, {in_a_row_s} s in a row");
+}
+
+#[test]
+fn the_tested_blocks_are_back_in_their_places() {
+    let trip = Trip::of("leak_test.obv", 1);
+    let places = ["block_a", "block_b"].map(|block| trip.ends_up_at(block));
+    assert_eq!(places, [[420, 150, 30], [540, 150, 30]]);
 }
 
 /// A production loop with a barrier in it: a hundred times the rounds, the same tape.

@@ -3,6 +3,7 @@
 //!
 //! Knows no words and no columns: those are in `commands/dry.rs`.
 
+use crate::story;
 use obverse_bytecode::Module;
 use obverse_isa::{Family, Instr};
 use obverse_vm::{Direction, Event, Observer};
@@ -46,11 +47,21 @@ pub(crate) enum Reading {
     Drawn,
 }
 
-/// Counts the time of a run.
+/// A call under way.
+struct Call {
+    function: usize,
+    /// The branch of each open fork that it is made in, outermost first.
+    branches: Vec<usize>,
+    /// How long it has taken so far: what its own branch did, or what it forked.
+    time_s: f64,
+}
+
+/// Counts the time of a run. The branches of a fork take turns in one cell: the time of a turn is
+/// that of its branch alone.
 pub(crate) struct Cycle<'m> {
     module: &'m Module,
-    /// The calls under way, and when they began.
-    calls: Vec<(usize, f64)>,
+    /// The calls under way, of one branch in their order.
+    calls: Vec<Call>,
     last_s: f64,
     /// By function.
     pub(crate) sequences: BTreeMap<usize, Times>,
@@ -78,10 +89,35 @@ impl<'m> Cycle<'m> {
         }
     }
 
-    /// The run is over: calls that did not end take until now.
+    /// The run is over, and so are the calls that did not end.
     pub(crate) fn end(&mut self, now_s: f64) {
-        while let Some((function, began_s)) = self.calls.pop() {
-            self.sequences.entry(function).or_default().add(now_s - began_s);
+        let took_s = now_s - self.last_s;
+        for call in std::mem::take(&mut self.calls) {
+            self.count(&Call { time_s: call.time_s + took_s, ..call });
+        }
+    }
+
+    fn count(&mut self, call: &Call) {
+        self.sequences.entry(call.function).or_default().add(call.time_s);
+    }
+
+    /// A branch took so long: so did the calls around it. Those in forks within it, which were left
+    /// without a return, are over.
+    fn pass(&mut self, branches: &[usize], took_s: f64) {
+        let is_within = |call: &mut Call| {
+            call.branches.len() > branches.len() && call.branches.starts_with(branches)
+        };
+        let over: Vec<Call> = self.calls.extract_if(.., is_within).collect();
+        over.iter().for_each(|call| self.count(call));
+        let around = self.calls.iter_mut().filter(|call| branches.starts_with(&call.branches));
+        around.for_each(|call| call.time_s += took_s);
+    }
+
+    /// The innermost call of a branch returned.
+    fn leave(&mut self, branches: &[usize]) {
+        if let Some(at) = self.calls.iter().rposition(|call| call.branches == branches) {
+            let call = self.calls.remove(at);
+            self.count(&call);
         }
     }
 
@@ -115,13 +151,13 @@ impl Observer for Cycle<'_> {
         let now_s = cell.now_s();
         let took_s = now_s - self.last_s;
         self.last_s = now_s;
+        self.pass(&event.branches, took_s);
         match event.instr {
-            Instr::Call { function, .. } => self.calls.push((function.index(), now_s)),
-            Instr::Return {} => {
-                if let Some((function, began_s)) = self.calls.pop() {
-                    self.sequences.entry(function).or_default().add(now_s - began_s);
-                }
+            Instr::Call { function, .. } => {
+                let (function, branches) = (function.index(), event.branches.clone());
+                self.calls.push(Call { function, branches, time_s: 0.0 });
             }
+            Instr::Return {} => self.leave(&event.branches),
             instr => {
                 let is_act = matches!(instr.info().family, Family::Kinematic | Family::Io);
                 if is_act || took_s > 0.0 {
@@ -132,7 +168,7 @@ impl Observer for Cycle<'_> {
                 if let Some(reading) = reading(instr, cell) {
                     self.read(event.pc, reading);
                 }
-                if let (Instr::MoveGuarded { .. }, Some(report)) = (instr, event.report) {
+                if let (true, Some(report)) = (story::is_guarded(instr), event.report) {
                     use obverse_workcell::MotionEnd;
                     let is_stopped = report.end == MotionEnd::StoppedByForce;
                     self.guarded.0 += 1;

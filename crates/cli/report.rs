@@ -37,6 +37,11 @@ impl Observer for Report<'_> {
             object["line"] = json!(line);
             object["column"] = json!(column);
         }
+        if !event.branches.is_empty() {
+            // From 1, as people count them.
+            let branch: Vec<usize> = event.branches.iter().map(|branch| branch + 1).collect();
+            object["branch"] = json!(branch);
+        }
         if let Some(report) = event.report {
             object["distance_m"] = json!(report.distance_m);
             object["peak_force_n"] = json!(report.peak_force_n);

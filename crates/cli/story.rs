@@ -25,6 +25,8 @@ pub(crate) struct Story<'m> {
 struct Told {
     time_s: f64,
     direction: Direction,
+    /// Which branch it belongs to of each fork that is open, outermost first.
+    branches: Vec<usize>,
     /// How many calls are under way around it.
     depth: usize,
     text: String,
@@ -67,11 +69,17 @@ impl Told {
             Direction::Reverse => '<',
         };
         let indent = "  ".repeat(self.depth.saturating_sub(2).min(DEPTH_MAX));
-        let text = format!("{indent}{}", self.text);
+        let text = format!("{}{indent}{}", mark(&self.branches), self.text);
         let time = format!("{:.2} s", self.time_s);
         let line = format!("{time:>9} {arrow} {text:<TEXT_COLUMNS$} {}", self.outcome);
         write::line(line.trim_end());
     }
+}
+
+/// Which branch of a fork a line belongs to: `|2 `, or `|2|1 ` in a fork within it; else empty.
+fn mark(branches: &[usize]) -> String {
+    let mark: String = branches.iter().map(|branch| format!("|{}", branch + 1)).collect();
+    if mark.is_empty() { mark } else { mark + " " }
 }
 
 /// The line over what a sequence does: where it is called, or, going back, where its end is passed.
@@ -93,6 +101,7 @@ fn heading(module: &Module, event: &Event, cell: &dyn Workcell) -> Option<Told> 
     Some(Told {
         time_s: cell.now_s(),
         direction: event.direction,
+        branches: event.branches.clone(),
         depth,
         text,
         outcome: outcome.to_owned(),
@@ -106,6 +115,7 @@ fn act(module: &Module, event: &Event, cell: &dyn Workcell) -> Option<Told> {
     Some(Told {
         time_s: cell.now_s(),
         direction: event.direction,
+        branches: event.branches.clone(),
         depth: event.frames,
         text,
         outcome,
@@ -262,9 +272,14 @@ fn dealt_with(module: &Module, error: ErrorId) -> String {
     format!("dealt with; {then}")
 }
 
+/// Whether it is a move that waits for contact.
+pub(crate) fn is_guarded(instr: Instr) -> bool {
+    matches!(instr, Instr::MoveGuarded { .. } | Instr::MoveGuardedOpposite { .. })
+}
+
 fn motion(event: &Event, report: &MotionReport) -> String {
     let distance_mm = report.distance_m * 1e3;
-    if matches!(event.instr, Instr::MoveGuarded { .. }) {
+    if is_guarded(event.instr) {
         let end = match report.end {
             MotionEnd::Reached => "reached its end",
             MotionEnd::StoppedByForce => "stopped by force",

@@ -299,6 +299,22 @@ impl Instr {
         }
     }
 
+    /// Whether a branch of a fork has had its turn when it has run this: it has commanded the
+    /// workcell, waited for it, or read what came of a motion. The turn goes on nevertheless if the
+    /// next instruction [reads](Self::reads_motion) that.
+    #[must_use]
+    pub fn ends_turn(&self) -> bool {
+        self.info().family.commands_workcell()
+            || matches!(self, Self::WaitInput { .. })
+            || self.reads_motion()
+    }
+
+    /// Whether it reads what came of the last motion.
+    #[must_use]
+    pub fn reads_motion(&self) -> bool {
+        matches!(self, Self::SenseDistance { .. } | Self::SensePeakForce { .. })
+    }
+
     /// Whether control never passes from this instruction to the next.
     #[must_use]
     pub fn never_falls_through(&self) -> bool {

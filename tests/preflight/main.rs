@@ -1,6 +1,8 @@
 //! What the check before anything moves finds: a small cell and a few lines for each grade, each
 //! reason and each way through a program that may lead to one.
 
+mod back;
+mod forks;
 mod support;
 
 use obverse_preflight::{Grade, Reason};

@@ -1,6 +1,6 @@
 //! A small cell, and programs checked in it.
 
-use obverse_bytecode::verify;
+use obverse_bytecode::{Module, assemble, verify};
 use obverse_geometry::Pose;
 use obverse_preflight::{Graded, MoveReport, Reason, Report, check};
 use obverse_sim::Cell;
@@ -91,11 +91,20 @@ impl Found {
     pub(crate) fn in_cell(cell: &Cell, program: &str) -> Self {
         let compiled = obverse_compiler::compile("program.obv", program);
         let Some(module) = compiled.module else { panic!("{:?}", compiled.diagnostics) };
+        Self::of_module(cell, module)
+    }
+
+    pub(crate) fn of_assembly(cell: &str, text: &str) -> Self {
+        let cell = Cell::parse(cell).unwrap_or_else(|error| panic!("{error}"));
+        let module = assemble(text).unwrap_or_else(|errors| panic!("{errors:?}\n{text}"));
+        Self::of_module(&cell, module)
+    }
+
+    fn of_module(cell: &Cell, module: Module) -> Self {
         let program = verify(module).expect("a module that verifies");
         let report = check(&program, cell).expect("a cell with all that is needed");
-        let line = |found: &MoveReport| {
-            program.module().place_of(found.pc).expect("a move that was written").1
-        };
+        let line =
+            |found: &MoveReport| program.module().place_of(found.pc).map_or(0, |place| place.1);
         let lines = report.moves.iter().map(line).collect();
         Self { report, lines }
     }

@@ -87,7 +87,7 @@ impl Allows {
     }
 
     fn within(&mut self, statement: &Statement<'_>) {
-        for block in statement.blocks().into_iter().flatten() {
+        for block in statement.blocks() {
             self.block(block);
         }
     }

@@ -5,8 +5,9 @@
 //! is being left goes up as one truth.
 
 use crate::response::{Response, is_for_caller, response};
-use crate::tree::{Block, Body, Program, StatementKind};
-use obverse_isa::{ErrorId, FunctionId};
+use crate::tree::{Block, Body, Program, Statement, StatementKind};
+use obverse_bytecode::ErrorDeclaration;
+use obverse_isa::{ErrorId, FunctionId, ReasonId, Setting};
 use obverse_syntax::span::Span;
 
 /// What is known of all functions. The start, function 0, has no effects.
@@ -29,10 +30,39 @@ struct Effect {
     own: Vec<ErrorId>,
     /// What it calls, and where.
     calls: Vec<(FunctionId, Span)>,
-    /// Whether it may make its caller leave.
+    /// What it does to its callers, itself or by a call.
+    carried: Carried,
+}
+
+/// What goes up from callees to their callers, and from statements to what they are in.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(crate) struct Carried {
+    /// Whether it may make the caller leave.
     leaves: bool,
-    /// Where it passes a barrier, itself or by a call.
+    /// Where a barrier is passed.
     barrier: Option<Span>,
+    /// Why a block of it cannot be taken back.
+    pub(crate) irreversible: Option<ReasonId>,
+    /// By setting: whether it is another one meanwhile.
+    pub(crate) sets: [bool; Setting::ALL.len()],
+}
+
+impl Carried {
+    /// This and the other.
+    pub(crate) fn and(self, other: Self) -> Self {
+        Self {
+            leaves: self.leaves || other.leaves,
+            barrier: self.barrier.or(other.barrier),
+            irreversible: self.irreversible.or(other.irreversible),
+            sets: std::array::from_fn(|at| self.sets[at] || other.sets[at]),
+        }
+    }
+
+    fn of_setting(setting: Setting) -> Self {
+        let mut carried = Self::default();
+        carried.sets[setting as usize] = true;
+        carried
+    }
 }
 
 impl Effects {
@@ -49,7 +79,11 @@ impl Effects {
             if let Body::Guarded(guarded) = &function.body {
                 let thrown = [guarded.on_success.throws, guarded.on_failure.throws];
                 let thrown = thrown.into_iter().flatten().map(|(error, _)| error);
-                effects.functions[id.index()].for_caller = distinct(thrown.collect());
+                let effect = &mut effects.functions[id.index()];
+                effect.for_caller = distinct(thrown.collect());
+                if guarded.speed.is_some() {
+                    effect.carried = Carried::of_setting(Setting::Speed);
+                }
             }
         }
         for (id, function) in program.numbered() {
@@ -65,23 +99,56 @@ impl Effects {
     /// What a block does that its own calls do not: those are followed later.
     fn of_block(&self, block: &Block, for_caller: &[bool]) -> Effect {
         let mut effect = Effect::default();
-        block.each_statement(&mut |statement| match &statement.kind {
-            StatementKind::Throw(error) => effect.raise(*error, for_caller),
-            StatementKind::Kept(block) => effect.calls.push((*block, statement.span)),
-            StatementKind::Advance(guarded, _) => {
-                for error in &self.functions[guarded.index()].for_caller {
-                    effect.raise(*error, for_caller);
+        block.each_statement(&mut |statement| {
+            effect.carried = effect.carried.and(self.carried_by(statement));
+            match &statement.kind {
+                StatementKind::Throw(error) => effect.raise(*error, for_caller),
+                StatementKind::Kept(block) => effect.calls.push((*block, statement.span)),
+                StatementKind::Advance(guarded, _) => {
+                    for error in &self.functions[guarded.index()].for_caller {
+                        effect.raise(*error, for_caller);
+                    }
                 }
+                StatementKind::Call(callee, _) => effect.calls.push((*callee, statement.span)),
+                _ => {}
             }
-            StatementKind::Call(callee, _) => effect.calls.push((*callee, statement.span)),
-            StatementKind::Barrier(_) | StatementKind::Irreversible(..) => {
-                effect.barrier = effect.barrier.or(Some(statement.span));
-            }
-            _ => {}
         });
         effect.own = distinct(std::mem::take(&mut effect.own));
         effect.for_caller = distinct(std::mem::take(&mut effect.for_caller));
         effect
+    }
+
+    /// What a statement does without those in its blocks, and without calls of sequences.
+    fn carried_by(&self, statement: &Statement) -> Carried {
+        match &statement.kind {
+            StatementKind::Advance(guarded, _) => self.functions[guarded.index()].carried,
+            StatementKind::Barrier(_) => {
+                Carried { barrier: Some(statement.span), ..Carried::default() }
+            }
+            StatementKind::Irreversible(reason, _) => Carried {
+                barrier: Some(statement.span),
+                irreversible: Some(*reason),
+                ..Carried::default()
+            },
+            StatementKind::Set(value) | StatementKind::SetFor { value, .. } => {
+                Carried::of_setting(value.setting())
+            }
+            _ => Carried::default(),
+        }
+    }
+
+    /// What a block does, itself or by a call.
+    pub(crate) fn of_statements(&self, block: &Block) -> Carried {
+        let mut carried = Carried::default();
+        block.each_statement(&mut |statement| {
+            carried = carried.and(match &statement.kind {
+                StatementKind::Call(callee, _) | StatementKind::Kept(callee) => {
+                    self.functions[callee.index()].carried
+                }
+                _ => self.carried_by(statement),
+            });
+        });
+        carried
     }
 
     /// Carry what goes up from callees to their callers.
@@ -99,19 +166,18 @@ impl Effects {
             let from_callees = callees.flat_map(|callee| &callee.for_caller);
             let may_leave =
                 effect.own.iter().chain(from_callees).any(|error| self.may_leave(*error));
-            self.functions[index].leaves = may_leave;
-            if may_leave || self.functions[index].barrier.is_some() {
+            let carried = &mut self.functions[index].carried;
+            carried.leaves = may_leave;
+            if *carried != Carried::default() {
                 changed.push(index);
             }
         }
         while let Some(callee) = changed.pop() {
-            let (leaves, barrier) = (self.functions[callee].leaves, self.functions[callee].barrier);
+            let carried = self.functions[callee].carried;
             for &caller in &callers[callee] {
-                let effect = &mut self.functions[caller];
-                let before = (effect.leaves, effect.barrier.is_some());
-                effect.leaves |= leaves;
-                effect.barrier = effect.barrier.or(barrier);
-                if before != (effect.leaves, effect.barrier.is_some()) {
+                let known = &mut self.functions[caller].carried;
+                let both = known.and(carried);
+                if std::mem::replace(known, both) != both {
                     changed.push(caller);
                 }
             }
@@ -144,14 +210,27 @@ impl Effects {
         &self.functions[function.index()].for_caller
     }
 
+    /// The errors that are responded to after a statement; `declared` are those of the program.
+    pub(crate) fn due(&self, kind: &StatementKind, declared: &[ErrorDeclaration]) -> Vec<ErrorId> {
+        let is_own = |error: &ErrorId| !is_for_caller(&declared[error.index()]);
+        match kind {
+            StatementKind::Throw(error) => Some(*error).filter(is_own).into_iter().collect(),
+            StatementKind::Advance(guarded, _) => {
+                self.left_by(*guarded).iter().copied().filter(is_own).collect()
+            }
+            StatementKind::Call(callee, _) => self.left_by(*callee).to_vec(),
+            _ => Vec::new(),
+        }
+    }
+
     /// Whether a function may make its caller leave.
     pub(crate) fn leaves(&self, function: FunctionId) -> bool {
-        self.functions[function.index()].leaves
+        self.functions[function.index()].carried.leaves
     }
 
     /// Where a function passes a barrier.
     pub(crate) fn barrier(&self, function: FunctionId) -> Option<Span> {
-        self.functions[function.index()].barrier
+        self.functions[function.index()].carried.barrier
     }
 
     /// What a function calls, and where.
@@ -162,12 +241,12 @@ impl Effects {
     /// Whether a function, or what it calls, may raise an error that is not just noted there.
     pub(crate) fn may_fail(&self, function: FunctionId) -> bool {
         let effect = &self.functions[function.index()];
-        effect.leaves || !effect.own.is_empty() || !effect.for_caller.is_empty()
+        effect.carried.leaves || !effect.own.is_empty() || !effect.for_caller.is_empty()
     }
 
     /// Whether any function may make its caller leave.
     pub(crate) fn any_leaves(&self) -> bool {
-        self.functions.iter().any(|effect| effect.leaves)
+        self.functions.iter().any(|effect| effect.carried.leaves)
             || self.functions.iter().any(|effect| !effect.for_caller.is_empty())
     }
 

@@ -10,6 +10,7 @@ mod allow;
 mod check;
 mod effects;
 mod fold;
+mod forks;
 mod keyframes;
 mod load;
 mod lower;
@@ -24,6 +25,7 @@ mod shortfall;
 mod tree;
 mod types;
 mod units;
+mod uses;
 
 pub use load::{Loader, MAX_IMPORT_DEPTH, MAX_IMPORTED};
 
@@ -71,6 +73,7 @@ fn compile_loaded(loaded: &Loaded) -> (Option<Module>, Vec<Diagnostic>) {
     let module = program.filter(|_| is_whole).and_then(|program| {
         let effects = Effects::of(&program);
         reversal::check(&program, &effects, &mut reports);
+        forks::check(&program, &effects, &mut reports);
         recursion::check(&program, &effects, &mut reports);
         match reports.has_errors() {
             true => None,

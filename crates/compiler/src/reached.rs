@@ -11,8 +11,8 @@ use obverse_syntax::span::Span;
 use std::collections::HashSet;
 
 /// Warn of the functions that only functions call that are never run; of those that nothing names
-/// at all (`unnamed`, by the place of their names) it is said elsewhere. What imported files declare
-/// serves other programs as well.
+/// at all (`unnamed`, by the place of their names) it is said elsewhere. What imported files
+/// declare serves other programs as well.
 pub(crate) fn check(
     program: &Program,
     sources: &Sources,

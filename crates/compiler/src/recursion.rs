@@ -40,6 +40,10 @@ fn follow(block: &Block, id: FunctionId, effects: &Effects) -> Way {
             StatementKind::SetFor { block, .. }
             | StatementKind::Irreversible(_, block)
             | StatementKind::Reversed(block, _) => follow(block, id, effects),
+            StatementKind::Fork(branches) => {
+                let mut ways = branches.iter().map(|branch| follow(branch, id, effects));
+                ways.find(|way| !matches!(way, Way::Through)).unwrap_or(Way::Through)
+            }
             _ if may_leave(statement, effects) => Way::MayLeave,
             _ => Way::Through,
         };

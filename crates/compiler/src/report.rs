@@ -23,7 +23,7 @@ pub(crate) struct Reports {
 }
 
 /// What may be a consequence of a part that the parser has left out.
-const OF_ABSENCE: [Code; 8] = [
+const OF_ABSENCE: [Code; 9] = [
     Code::UnknownName,
     Code::UnknownKeyframe,
     Code::UnknownCheckpoint,
@@ -32,6 +32,7 @@ const OF_ABSENCE: [Code; 8] = [
     Code::BreakOutsideLoop,
     Code::NoNamedPosition,
     Code::ArgumentCount,
+    Code::ForkBranches,
 ];
 
 impl Reports {

@@ -113,6 +113,7 @@ fn chain(found: Diagnostic, source: Source<'_>, way: &Way) -> Diagnostic {
             Link::CalledFrom(pc) => (pc, "called from here"),
             Link::Within(pc) => (pc, "going back enters what this has called"),
             Link::InPlaceOf(pc) => (pc, "run in place of this"),
+            Link::Beside(pc) => (pc, "another branch of this may have run"),
         };
         // The start calls the first sequence without a word.
         let is_written = module.function_at(pc).is_some_and(|function| function > 0);

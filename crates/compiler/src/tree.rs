@@ -275,6 +275,8 @@ pub(crate) enum StatementKind {
     },
     /// Repeat for ever.
     Loop(Block),
+    /// Tasks that take turns, until all are done.
+    Fork(Vec<Block>),
     /// Leave the innermost loop.
     Break,
     /// Leave the function.
@@ -522,6 +524,7 @@ impl Statement {
             StatementKind::SetFor { block, .. }
             | StatementKind::Irreversible(_, block)
             | StatementKind::Reversed(block, _) => visit(block),
+            StatementKind::Fork(branches) => branches.iter().for_each(visit),
             _ => {}
         }
     }

@@ -3,7 +3,7 @@
 //! Mirrors the machine's families, on values that may not be known. An effect that is not known
 //! here leaves nothing known: new instructions are never taken for harmless.
 
-use crate::command::{Aim, Command};
+use crate::command::{Aim, Command, Guard};
 use crate::explore::{Course, Explorer};
 use crate::reason::Reason;
 use crate::state::{State, Word};
@@ -11,7 +11,7 @@ use crate::trace::{Deed, Node};
 use crate::verdict::Verdict;
 use crate::worlds::WorldId;
 use obverse_geometry::Pose;
-use obverse_isa::{Family, Instr, KeyframeId, LocalId, Setting};
+use obverse_isa::{Family, Instr, KeyframeId, LocalId, Setting, SpeedId};
 use obverse_sim::cell::InputRule;
 use obverse_vm::{Direction, convert};
 use obverse_workcell::{Items, Path, Speed, ToolId};
@@ -73,6 +73,12 @@ impl Explorer<'_> {
                 *place = self.values.binary(change, *place, operands.word(0));
                 self.pass(state)
             }
+            // The limit of a force is above zero, or the machine traps.
+            Instr::SettingSet { setting: Setting::ReverseForceLimit, .. }
+                if operands.real(0).is_some_and(|limit_n| !(limit_n > 0.0)) =>
+            {
+                None
+            }
             Instr::SettingSet { setting, .. } => {
                 state.settings[setting as usize] = operands.word(0);
                 self.pass(state)
@@ -125,7 +131,7 @@ impl Explorer<'_> {
         operands: &Operands<'_>,
     ) -> Option<State> {
         if let Some(command) = self.command(&state, instr, operands) {
-            let back = self.command_back(&state, instr, &command, operands);
+            let back = self.command_back(&state, instr, command, operands);
             return self.go(state, &command?, back);
         }
         match instr {
@@ -190,9 +196,15 @@ impl Explorer<'_> {
                 if instr.info().family == Family::Kinematic {
                     self.note_unknown(&state);
                 }
+                if !state.forks.is_empty() {
+                    return self.lose_turns(state);
+                }
+                state.frame_mut().forget();
+                let before = state.world;
                 state.forget_effects(self.worlds.nothing_known());
-                state.frame_mut().locals.fill(None);
-                state.frame_mut().slots.fill(None);
+                let (deed, after) = (Deed::Unfollowed { restores: false }, state.world);
+                let from = vec![state.last];
+                state.last = self.trace.add(Node { deed, before, after, from });
                 self.pass(state)
             }
         }
@@ -283,7 +295,7 @@ impl Explorer<'_> {
             Course::InReverse => Direction::Reverse,
         };
         self.notes.add(pc, direction, &answer.verdict, &calls, state.is_planned);
-        let is_guarded = command.force_limit_n.is_some();
+        let is_guarded = command.guard != Guard::None;
         let number = |of: Option<f64>| of.map(f64::to_bits);
         state.distance = number(answer.report.map(|report| report.distance_m));
         // What is read of a motion that waits for no contact is noise.
@@ -309,23 +321,32 @@ impl Explorer<'_> {
         Some(arrive(self, state, answer.after))
     }
 
-    /// The command that goes back over a motion.
+    /// The command that goes back over a motion, in the settings that hold for it: they are what
+    /// they were when the machine comes back to it.
     fn command_back(
         &self,
         state: &State,
         instr: Instr,
-        there: &Option<Command>,
+        there: Option<Command>,
         operands: &Operands<'_>,
     ) -> Command {
-        let (path, tool, speed) = match there {
-            Some(there) => (there.path, there.tool, there.speed),
-            None => (Path::Joint, None, None),
+        let setting = |setting: Setting| state.settings[setting as usize];
+        let path = match setting(Setting::ReverseStraight) {
+            Some(0) => there.and_then(|there| there.path),
+            Some(_) => Some(Path::Linear),
+            None => None,
         };
         let aim = match instr {
             Instr::MoveAlways { .. } => self.named(operands.word(0)).unwrap_or(Aim::NotKnown),
             _ => self.worlds.joints(state.world).map_or(Aim::NotKnown, Aim::Joints),
         };
-        Command { aim, path, tool, speed, force_limit_n: None }
+        Command {
+            aim,
+            path,
+            tool: there.and_then(|there| there.tool),
+            speed: speed(state, &[Setting::ReverseSpeed, Setting::Speed]),
+            guard: guard_back(instr, operands, setting(Setting::ReverseForceLimit)),
+        }
     }
 
     /// The motion that an instruction commands, if it is one; none within if it would trap.
@@ -335,11 +356,16 @@ impl Explorer<'_> {
         instr: Instr,
         operands: &Operands<'_>,
     ) -> Option<Option<Command>> {
-        let mut force_limit_n = None;
+        let mut guard = Guard::None;
         let or_not_known = |aim: Option<Aim>| aim.unwrap_or(Aim::NotKnown);
         let joints = |at: usize| match operands.word(at) {
             Some(word) => self.named(Some(word)),
             None => Some(Aim::NotKnown),
+        };
+        let displaced = |axis, frame| {
+            let (axis, frame) = (convert::axis(axis), convert::frame(frame));
+            let displaced = |distance_m| Aim::Displaced { distance_m, axis, frame };
+            Some(or_not_known(operands.real(0).map(displaced)))
         };
         let (aim, path) = match instr {
             Instr::MoveJoint { .. } => (joints(0), Path::Joint),
@@ -348,15 +374,11 @@ impl Explorer<'_> {
             Instr::MoveItem { keyframe, path, .. } => {
                 (self.keyframe(operands.word(0), keyframe), convert::path(path))
             }
-            Instr::MoveRelative { axis, frame, .. } | Instr::MoveGuarded { axis, frame, .. } => {
-                let (axis, frame) = (convert::axis(axis), convert::frame(frame));
-                let mut distance_m = operands.real(0);
-                if matches!(instr, Instr::MoveGuarded { .. }) {
-                    force_limit_n = operands.real(1).or(Some(f64::NAN));
-                    distance_m = operands.real(1).and(distance_m);
-                }
-                let aim = distance_m.map(|distance_m| Aim::Displaced { distance_m, axis, frame });
-                (Some(or_not_known(aim)), Path::Linear)
+            Instr::MoveRelative { axis, frame, .. } => (displaced(axis, frame), Path::Linear),
+            Instr::MoveGuarded { axis, frame, .. }
+            | Instr::MoveGuardedOpposite { axis, frame, .. } => {
+                guard = Guard::Ends(operands.real(1));
+                (displaced(axis, frame), Path::Linear)
             }
             Instr::MoveOffset { frame, .. } => {
                 let all: Option<Vec<f64>> = (0..3).map(|at| operands.real(at)).collect();
@@ -370,12 +392,10 @@ impl Explorer<'_> {
             }
             _ => return None,
         };
-        let setting = |setting: Setting| state.settings[setting as usize];
-        let tool = setting(Setting::Tool).and_then(|tool| u16::try_from(tool).ok());
-        let speed = setting(Setting::Speed).and_then(|speed| usize::try_from(speed).ok());
-        let speed = speed.and_then(|speed| Speed::ALL.get(speed).copied());
-        let tool = tool.map(ToolId);
-        Some(aim.map(|aim| Command { aim, path, tool, speed, force_limit_n }))
+        let tool = state.settings[Setting::Tool as usize];
+        let tool = tool.and_then(|tool| u16::try_from(tool).ok()).map(ToolId);
+        let speed = speed(state, &[Setting::Speed]);
+        Some(aim.map(|aim| Command { aim, path: Some(path), tool, speed, guard }))
     }
 
     /// The module's joint configuration of a number; none if there is none.
@@ -394,5 +414,28 @@ impl Explorer<'_> {
         let nominal = workcell.nominal_pose(workcell.item(&item.name)?)?;
         let offset = Pose::from_rotation_vector(keyframe.position_m, keyframe.rotation_rad);
         Some(Aim::Pose(nominal.compose(&offset)))
+    }
+}
+
+/// The speed that holds: the first of these settings that names one, and else the normal one.
+fn speed(state: &State, settings: &[Setting]) -> Option<Speed> {
+    for &setting in settings {
+        let named = state.settings[setting as usize]?;
+        if named != SpeedId::Unnamed as u64 {
+            return Speed::ALL.get(usize::try_from(named).ok()?).copied();
+        }
+    }
+    Some(Speed::Normal)
+}
+
+/// What stops a motion that goes back: the less of its own limit and that of the setting.
+fn guard_back(instr: Instr, operands: &Operands<'_>, setting: Word) -> Guard {
+    let set = setting.map(f64::from_bits);
+    match instr {
+        Instr::MoveGuardedOpposite { .. } => {
+            Guard::Faults(operands.real(1).zip(set).map(|(own, set)| own.min(set)))
+        }
+        _ if set == Some(f64::INFINITY) => Guard::None,
+        _ => Guard::Faults(set),
     }
 }

@@ -2,8 +2,9 @@
 //!
 //! Going back over a deed from the workcell that it left is looked at for every deed: a reversal
 //! may begin behind any of them. That leads to the workcell before it, behind the deed before,
-//! which is looked at anyway. Only where it leads to another one (a block that is passed over or
+//! which is looked at anyway. Only where it leads elsewhere (a block that is passed over or
 //! replaced, a move to the position that was named last) the workcell is carried further back.
+//! Two workcells of which not all is known may be different ones.
 
 use crate::command::Aim;
 use crate::explore::{Course, Explorer};
@@ -22,6 +23,8 @@ const MAX_DEVIATIONS: usize = 50_000;
 struct Back {
     over: NodeId,
     from: WorldId,
+    /// Whether it may be another workcell than the deed left.
+    is_elsewhere: bool,
 }
 
 impl Explorer<'_> {
@@ -29,15 +32,16 @@ impl Explorer<'_> {
     pub(crate) fn go_back(&mut self) -> bool {
         let mut open: Vec<Back> = Vec::new();
         for over in self.trace.ids() {
-            open.push(Back { over, from: self.trace.of(over).after });
+            let from = self.trace.of(over).after;
+            open.push(Back { over, from, is_elsewhere: false });
         }
-        let mut seen: HashSet<(NodeId, WorldId)> = HashSet::new();
+        let mut seen: HashSet<(NodeId, WorldId, bool)> = HashSet::new();
         let mut deviations = 0;
         while let Some(back) = open.pop() {
-            if !seen.insert((back.over, back.from)) {
+            if !seen.insert((back.over, back.from, back.is_elsewhere)) {
                 continue;
             }
-            deviations += usize::from(back.from != self.trace.of(back.over).after);
+            deviations += usize::from(back.is_elsewhere);
             if deviations > MAX_DEVIATIONS {
                 return false;
             }
@@ -49,12 +53,19 @@ impl Explorer<'_> {
     fn back_over(&mut self, back: &Back, open: &mut Vec<Back>) {
         let node = self.trace.of(back.over).clone();
         // Undone where it was done, it leaves what was before, however little of that is known.
-        let restores = back.from == node.after && self.restores(&node);
+        let restores = !back.is_elsewhere && self.restores(&node);
         let (mut before, mut behind) = (node.before, node.from);
         let arrived = match node.deed {
             Deed::Begin | Deed::Never => return,
+            Deed::Move { pc, back: command, calls, is_planned } => {
+                let answer = self.worlds.ask(back.from, &command);
+                let verdict = &answer.verdict;
+                self.notes.add(pc, Direction::Reverse, verdict, &calls, is_planned);
+                vec![answer.after]
+            }
+            _ if restores => return,
             Deed::Merge | Deed::BlockBegin => vec![back.from],
-            Deed::Output | Deed::Toggle if restores => return,
+            Deed::Unfollowed { .. } => vec![self.worlds.nothing_known()],
             Deed::Output => {
                 let level = self.worlds.level(node.before);
                 vec![self.worlds.with_level(back.from, level)]
@@ -62,12 +73,6 @@ impl Explorer<'_> {
             Deed::Toggle => {
                 let level = self.worlds.level(back.from).map(|level| !level);
                 vec![self.worlds.with_level(back.from, level)]
-            }
-            Deed::Move { pc, back: command, calls, is_planned } => {
-                let answer = self.worlds.ask(back.from, &command);
-                let verdict = &answer.verdict;
-                self.notes.add(pc, Direction::Reverse, verdict, &calls, is_planned);
-                vec![if restores { node.before } else { answer.after }]
             }
             Deed::BlockSkip { begin } => {
                 let begin = self.trace.of(begin);
@@ -80,31 +85,43 @@ impl Explorer<'_> {
                 self.replace(&state, back.from, function)
             }
         };
-        for from in arrived.into_iter().filter(|from| *from != before) {
-            open.extend(behind.iter().map(|&over| Back { over, from }));
+        if restores {
+            return;
+        }
+        for from in arrived {
+            if from != before || !self.worlds.is_known(from) {
+                let to = |&over| Back { over, from, is_elsewhere: true };
+                open.extend(behind.iter().map(to));
+            }
         }
     }
 
     /// Whether a deed's own reversal, from where the deed led, leads to where it began.
     fn restores(&self, node: &Node) -> bool {
-        let Deed::Move { back, .. } = &node.deed else { return true };
-        match (back.aim, self.worlds.joints(node.before)) {
-            (Aim::Joints(to), Some(from)) => to.same_bits(&from),
-            // Recorded, and not known here.
-            (Aim::NotKnown, _) => true,
-            _ => false,
+        match &node.deed {
+            Deed::Move { back, .. } => match (back.aim, self.worlds.joints(node.before)) {
+                (Aim::Joints(to), Some(from)) => to.same_bits(&from),
+                // Recorded, and not known here.
+                (Aim::NotKnown, _) => true,
+                _ => false,
+            },
+            Deed::Unfollowed { restores } => *restores,
+            Deed::BlockSkip { .. } | Deed::BlockReplace { .. } => false,
+            _ => true,
         }
     }
 
     /// Run a function in place of going back over a block; the workcells that it may leave.
     fn replace(&mut self, state: &Rc<State>, world: WorldId, function: FunctionId) -> Vec<WorldId> {
         let mut state = State::clone(state);
-        let declared = &self.values.module.functions[function.index()];
-        let frame = Frame::new(function.index(), declared, state.pc + 1);
+        let functions = &self.values.module.functions;
+        let declared = &functions[function.index()];
+        let mut frame = Frame::new(function.index(), declared, state.pc + 1);
+        frame.begin_with(state.frame(), declared);
         // Going back moves too, so that what the last motion reported is another one.
         (state.distance, state.peak_force) = (None, None);
         state.frames = vec![frame];
-        state.blocks = Vec::new();
+        (state.blocks, state.forks) = (Vec::new(), Vec::new());
         state.world = world;
         state.pc = declared.first as usize + 1;
         let mut left = self.follow(state, Course::InReverse);

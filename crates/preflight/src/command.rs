@@ -22,14 +22,25 @@ pub(crate) enum Aim {
     NotKnown,
 }
 
+/// What it means that a motion meets more than so many newtons, if that number is known.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) enum Guard {
+    /// There is no such number: to meet something too hard is a collision.
+    None,
+    /// The motion ends there, as it should.
+    Ends(Option<f64>),
+    /// The motion is stopped with a fault: going back, the arm is not where it was.
+    Faults(Option<f64>),
+}
+
 /// A motion as far as it is known.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Command {
     pub(crate) aim: Aim,
-    pub(crate) path: Path,
+    pub(crate) path: Option<Path>,
     pub(crate) tool: Option<ToolId>,
     pub(crate) speed: Option<Speed>,
-    pub(crate) force_limit_n: Option<f64>,
+    pub(crate) guard: Guard,
 }
 
 impl Command {
@@ -44,17 +55,28 @@ impl Command {
             Aim::Offset { by_m, frame } => Goal::Offset { from, by_m, frame },
             Aim::NotKnown => return None,
         };
-        let (speed, tool) = (self.speed?, self.tool?);
-        Some(Motion { goal, path: self.path, speed, tool, force_limit_n: self.force_limit_n })
+        let (path, speed, tool) = (self.path?, self.speed?, self.tool?);
+        let force_limit_n = match self.guard {
+            Guard::None => None,
+            Guard::Ends(limit_n) | Guard::Faults(limit_n) => Some(limit_n?),
+        };
+        Some(Motion { goal, path, speed, tool, force_limit_n })
     }
 
     /// All of it as numbers: two commands with the same numbers are the same.
     pub(crate) fn numbers(&self) -> Vec<u64> {
+        let (guard, limit_n) = match self.guard {
+            Guard::None => (0, None),
+            Guard::Ends(limit_n) => (1, limit_n),
+            Guard::Faults(limit_n) => (2, limit_n),
+        };
         let mut numbers = vec![
-            u64::from(self.path == Path::Linear),
+            self.path.map_or(u64::MAX, |path| path as u64),
             self.tool.map_or(u64::MAX, |tool| u64::from(tool.0)),
             self.speed.map_or(u64::MAX, |speed| speed as u64),
-            self.force_limit_n.map_or(u64::MAX, f64::to_bits),
+            guard,
+            u64::from(limit_n.is_some()),
+            limit_n.map_or(0, f64::to_bits),
         ];
         match &self.aim {
             Aim::Joints(joints) => {

@@ -8,13 +8,15 @@ use crate::notes::Notes;
 use crate::reason::Reason;
 use crate::seen::Seen;
 use crate::state::{Frame, State, Word};
-use crate::trace::{NodeId, Trace};
+use crate::trace::{Deed, Node, NodeId, Trace};
 use crate::value::{Trapped, Values};
 use crate::verdict::Verdict;
 use crate::worlds::{WorldId, Worlds};
+use obverse_bytecode::Module;
 use obverse_isa::{CounterId, Family, FunctionId, Instr, Label};
-use obverse_vm::Direction;
-use std::collections::HashSet;
+use obverse_vm::{Branches, Direction, branches};
+use std::collections::{BTreeMap, HashMap, HashSet};
+use std::ops::Range;
 use std::rc::Rc;
 
 /// The most work that is done in one check: a statement is one, and so is every [`WORDS`] of a
@@ -44,20 +46,24 @@ pub(crate) struct Explorer<'m> {
     pub(crate) trace: Trace,
     pub(crate) notes: Notes,
     pub(crate) course: Course,
+    /// The branches of each fork.
+    pub(crate) branches: BTreeMap<u32, Branches>,
     seen: Seen,
     /// States that are still to be followed.
     pub(crate) open: Vec<State>,
     /// The workcells in which the outermost call that is followed ended.
     ended: Vec<WorldId>,
     work: usize,
-    /// The functions that were called deeper than is followed, and whether as planned.
-    unfollowed: HashSet<(FunctionId, bool)>,
+    /// The code that is not followed, by its first instruction and whether as planned; whether
+    /// going back over it leads to where it began.
+    unfollowed: HashMap<(u32, bool), bool>,
 }
 
 impl<'m> Explorer<'m> {
     pub(crate) fn new(values: Values<'m>, worlds: Worlds) -> (Self, NodeId) {
         let (trace, begin) = Trace::new(worlds.start());
         let explorer = Self {
+            branches: branches(&values.module.code),
             values,
             worlds,
             trace,
@@ -67,7 +73,7 @@ impl<'m> Explorer<'m> {
             open: Vec::new(),
             ended: Vec::new(),
             work: 0,
-            unfollowed: HashSet::new(),
+            unfollowed: HashMap::new(),
         };
         (explorer, begin)
     }
@@ -125,6 +131,10 @@ impl<'m> Explorer<'m> {
             }
             Instr::ForNext { counter, target } => self.next_round(state, counter, target),
             Instr::Call { function, .. } => self.call(state, function, operands),
+            Instr::Fork { .. }
+            | Instr::ForkNext {}
+            | Instr::ForkJoin { .. }
+            | Instr::ForkLeave { .. } => self.task(state, instr),
             Instr::Return {} => self.leave(state),
             Instr::Halt {} => {
                 self.ended.push(state.world);
@@ -135,7 +145,7 @@ impl<'m> Explorer<'m> {
                     let is_taken = self.is_taken(&state, instr, operands);
                     self.part(state, is_taken, target)
                 }
-                None => self.act(state, instr, operands),
+                None => self.act_in_turn(state, instr, operands),
             },
         }
     }
@@ -153,7 +163,7 @@ impl<'m> Explorer<'m> {
     }
 
     /// Come to a place where ways meet.
-    fn meet(&mut self, state: State) -> Option<State> {
+    pub(crate) fn meet(&mut self, state: State) -> Option<State> {
         self.work += state.size() / WORDS;
         self.seen.meet(state, self.worlds.nothing_known(), &mut self.trace)
     }
@@ -246,11 +256,14 @@ impl<'m> Explorer<'m> {
     fn call(&mut self, mut state: State, function: FunctionId, operands: &[Word]) -> Option<State> {
         let is_it = |frame: &&Frame| frame.function == function.index();
         let under_way = state.frames.iter().filter(is_it).count();
-        let is_too_deep = state.frames.len() >= MAX_CALLS
+        let is_too_deep = state.all_frames().count() >= MAX_CALLS
             || !state.is_certain && under_way >= MAX_UNCERTAIN_RECURSION;
         if is_too_deep {
-            self.note_unfollowed(function, state.is_planned);
-            state.forget_effects(self.worlds.nothing_known());
+            if !state.forks.is_empty() {
+                return self.lose_turns(state);
+            }
+            let function = &self.values.module.functions[function.index()];
+            let state = self.leave_unfollowed(state, function.first..function.end);
             return self.pass(state);
         }
         let declared = &self.values.module.functions[function.index()];
@@ -263,31 +276,40 @@ impl<'m> Explorer<'m> {
         self.meet(state)
     }
 
-    /// All that a call may lead to is done from where nobody knows.
-    fn note_unfollowed(&mut self, function: FunctionId, is_planned: bool) {
-        let module = self.values.module;
+    /// Some code, and all that it calls, is run from where nobody knows, and leads nobody knows
+    /// where.
+    pub(crate) fn leave_unfollowed(&mut self, mut state: State, code: Range<u32>) -> State {
+        let restores = self.note_unfollowed(code, state.is_planned);
+        let before = state.world;
+        state.forget_effects(self.worlds.nothing_known());
+        let (deed, after) = (Deed::Unfollowed { restores }, state.world);
+        let from = vec![state.last];
+        state.last = self.trace.add(Node { deed, before, after, from });
+        state
+    }
+
+    /// Note it of every move there, once; whether going back over it leads to where it began.
+    fn note_unfollowed(&mut self, code: Range<u32>, is_planned: bool) -> bool {
+        let key = (code.start, is_planned);
+        if let Some(&restores) = self.unfollowed.get(&key) {
+            return restores;
+        }
         let unknown = Rc::new(Verdict::new(Reason::DeepCalls));
         let calls: Rc<[u32]> = Rc::new([]);
-        let mut open = vec![function];
-        while let Some(function) = open.pop() {
-            if !self.unfollowed.insert((function, is_planned)) {
-                continue;
-            }
-            let function = &module.functions[function.index()];
-            for pc in function.first..function.end {
-                match module.code[pc as usize] {
-                    Instr::Call { function, .. } | Instr::BlockReplace { function, .. } => {
-                        open.push(function);
-                    }
-                    instr if instr.info().family == Family::Kinematic => {
-                        for direction in [Direction::Forward, Direction::Reverse] {
-                            self.notes.add(pc, direction, &unknown, &calls, is_planned);
-                        }
-                    }
-                    _ => {}
+        let mut restores = true;
+        for (pc, instr) in with_calls(self.values.module, code) {
+            restores &= !matches!(
+                instr,
+                Instr::BlockSkip { .. } | Instr::BlockReplace { .. } | Instr::MoveAlways { .. }
+            );
+            if instr.info().family == Family::Kinematic {
+                for direction in [Direction::Forward, Direction::Reverse] {
+                    self.notes.add(pc, direction, &unknown, &calls, is_planned);
                 }
             }
         }
+        self.unfollowed.insert(key, restores);
+        restores
     }
 
     fn leave(&mut self, mut state: State) -> Option<State> {
@@ -299,4 +321,23 @@ impl<'m> Explorer<'m> {
         state.pc = left.return_pc;
         self.meet(state)
     }
+}
+
+/// Some code and that of all functions that it may call, or run in reverse.
+fn with_calls(module: &Module, code: Range<u32>) -> Vec<(u32, Instr)> {
+    let mut called: HashSet<FunctionId> = HashSet::new();
+    let (mut open, mut all) = (vec![code], Vec::new());
+    while let Some(code) = open.pop() {
+        for pc in code {
+            let instr = module.code[pc as usize];
+            all.push((pc, instr));
+            if let Instr::Call { function, .. } | Instr::BlockReplace { function, .. } = instr
+                && called.insert(function)
+            {
+                let function = &module.functions[function.index()];
+                open.push(function.first..function.end);
+            }
+        }
+    }
+    all
 }

@@ -5,7 +5,8 @@
 //! in reverse. Every move gets a [`Grade`] with a [`Reason`]. The workcell answers with the code
 //! that carries out real motions; everything is taken to be where the workcell file says.
 //!
-//! Read `state` and `worlds`, then `explore` and `act`, then `seen` (why it ends) and `back`.
+//! Read `state` and `worlds`, then `explore`, `act` and `tasks`, then `seen` (why it ends) and
+//! `back`.
 //! Knows nothing of source languages, of files, or of how its findings are shown.
 
 mod act;
@@ -17,6 +18,7 @@ pub mod reason;
 mod report;
 mod seen;
 mod state;
+mod tasks;
 mod trace;
 mod value;
 mod verdict;

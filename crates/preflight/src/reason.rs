@@ -182,8 +182,9 @@ reasons! {
     GoalNotKnown "P0602" NotKnown "the goal is only known when the program runs"
         "The distance or the position comes from a reading, a draw, or a variable that has many \
          values there."
-    SettingNotKnown "P0603" NotKnown "the tool or the speed is only known when the program runs"
-        "Which tool is mounted, or how fast the arm goes, depends on what happens before."
+    SettingNotKnown "P0603" NotKnown "how the arm moves is only known when the program runs"
+        "Which tool is mounted, how fast the arm goes, what force stops it, or by which path it \
+         goes back depends on what happens before."
     HeldNotKnown "P0604" NotKnown "what is held and where things lie is only known when it runs"
         "The gripper closed or opened at a place that is not known, or the program asks whether \
          it holds something and goes on where the answer is the other one. The path is free of \

@@ -96,6 +96,7 @@ pub fn check(program: &Verified, cell: &Cell) -> Result<Report, Vec<LinkError>> 
         is_planned: true,
         is_certain: true,
         blocks: Vec::new(),
+        forks: Vec::new(),
         last: begin,
     };
     explorer.follow(start, Course::Forward);

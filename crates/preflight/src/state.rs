@@ -3,6 +3,7 @@
 //! A word is known or not; the workcell is one of those that [`Worlds`](crate::worlds) keeps. A
 //! state stands for every run whose values are those that it knows.
 
+use crate::tasks::Fork;
 use crate::trace::NodeId;
 use crate::worlds::WorldId;
 use obverse_bytecode::Function;
@@ -43,6 +44,8 @@ pub(crate) struct State {
     pub(crate) is_certain: bool,
     /// The blocks with a reverse of their own that are open.
     pub(crate) blocks: Vec<NodeId>,
+    /// The forks that are open, outermost first.
+    pub(crate) forks: Vec<Fork>,
     /// The last thing done that a reversal comes by.
     pub(crate) last: NodeId,
 }
@@ -56,6 +59,27 @@ impl Frame {
             counters: vec![[Some(0); 3]; usize::from(function.counters)],
             slots: vec![Some(JointConfiguration::ZERO); function.slots.len()],
         }
+    }
+
+    /// Begin with what the frame around has: the locals that are this one's parameters, the
+    /// counters that both have, and the positions.
+    pub(crate) fn begin_with(&mut self, around: &Self, function: &Function) {
+        let parameters = usize::from(function.parameters);
+        for (own, outer) in self.locals.iter_mut().zip(&around.locals).take(parameters) {
+            *own = *outer;
+        }
+        for (own, outer) in self.counters.iter_mut().zip(&around.counters) {
+            *own = *outer;
+        }
+        for (own, outer) in self.slots.iter_mut().zip(&around.slots) {
+            *own = *outer;
+        }
+    }
+
+    /// Forget all that it holds.
+    pub(crate) fn forget(&mut self) {
+        self.words_mut().for_each(|word| *word = None);
+        self.slots.fill(None);
     }
 
     fn words(&self) -> impl Iterator<Item = &Word> {
@@ -87,20 +111,36 @@ impl State {
         let frame = |frame: &Frame| {
             frame.locals.len() + 3 * frame.counters.len() + 6 * frame.slots.len() + 8
         };
-        self.globals.len() + self.frames.iter().map(frame).sum::<usize>()
+        let tasks = self.forks.iter().map(|fork| 4 * fork.tasks.len()).sum::<usize>();
+        self.globals.len() + tasks + self.all_frames().map(frame).sum::<usize>()
     }
 
-    /// Where it is, through which calls, in which blocks: only states at one place are compared.
+    /// The calls under way, and then those of the tasks that wait.
+    pub(crate) fn all_frames(&self) -> impl Iterator<Item = &Frame> {
+        let waiting = self.forks.iter().flat_map(|fork| &fork.tasks);
+        self.frames.iter().chain(waiting.flat_map(|task| &task.frames))
+    }
+
+    fn all_frames_mut(&mut self) -> impl Iterator<Item = &mut Frame> {
+        let waiting = self.forks.iter_mut().flat_map(|fork| &mut fork.tasks);
+        self.frames.iter_mut().chain(waiting.flat_map(|task| &mut task.frames))
+    }
+
+    /// Where it is, through which calls, in which blocks, and where the tasks wait: only states at
+    /// one place are compared.
     pub(crate) fn place(&self) -> Vec<usize> {
         let calls = self.frames.iter().map(|frame| frame.return_pc);
         let blocks = self.blocks.iter().map(|block| block.index());
-        calls.chain([usize::MAX, self.pc]).chain(blocks).collect()
+        let mut place: Vec<usize> =
+            calls.chain([usize::MAX, self.pc, self.blocks.len()]).chain(blocks).collect();
+        self.forks.iter().for_each(|fork| fork.add_place(&mut place));
+        place
     }
 
     /// Whether every run that `other` stands for is one that this stands for; both at one place.
     pub(crate) fn covers(&self, other: &Self, nothing_known: WorldId) -> bool {
         let is_same_world = self.world == other.world || self.world == nothing_known;
-        let frames = || self.frames.iter().zip(&other.frames);
+        let frames = || self.all_frames().zip(other.all_frames());
         is_same_world
             && (self.is_planned || !other.is_planned)
             && covers_all(self.globals.iter(), other.globals.iter())
@@ -131,7 +171,7 @@ impl State {
         if self.raised != other.raised {
             self.raised = None;
         }
-        for (frame, other) in self.frames.iter_mut().zip(&other.frames) {
+        for (frame, other) in self.all_frames_mut().zip(other.all_frames()) {
             frame.words_mut().zip(other.words()).for_each(|(word, other)| meet(word, other));
             for (slot, other) in frame.slots.iter_mut().zip(&other.slots) {
                 if !same_position(slot, other) {

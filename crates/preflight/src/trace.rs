@@ -35,6 +35,8 @@ pub(crate) enum Deed {
     BlockSkip { begin: NodeId },
     /// It ended, and a function takes its place in reverse, called in this state.
     BlockReplace { begin: NodeId, function: FunctionId, state: Rc<State> },
+    /// Something that is not followed, and whether going back over it leads to where it began.
+    Unfollowed { restores: bool },
     /// Something that cannot be taken back.
     Never,
 }

@@ -3,12 +3,12 @@
 //! Workcells that are alike in all that a motion depends on are one, and each is asked about each
 //! motion once. Knows nothing of programs.
 
-use crate::command::{Aim, Command};
+use crate::command::{Aim, Command, Guard};
 use crate::reason::Reason;
 use crate::verdict::{Verdict, of_fault};
 use obverse_geometry::JointConfiguration;
 use obverse_sim::{Cell, Plan, Sim};
-use obverse_workcell::{Arm, Fault, Gripper, Motion, MotionReport, Path};
+use obverse_workcell::{Arm, Fault, Gripper, Motion, MotionEnd, MotionReport, Path};
 use std::collections::HashMap;
 use std::rc::Rc;
 
@@ -146,6 +146,12 @@ impl Worlds {
         (world.stand == Stand::Known).then(|| world.plan.workcell().joints())
     }
 
+    /// Whether nothing of it is left open, so that two of them are the same.
+    pub(crate) fn is_known(&self, id: WorldId) -> bool {
+        let world = self.of(id);
+        world.stand == Stand::Known && world.knows_items && world.level.is_some()
+    }
+
     /// The level of the gripper's output, if there is a gripper and it is known.
     pub(crate) fn level(&self, id: WorldId) -> Option<bool> {
         self.of(id).level
@@ -228,7 +234,7 @@ impl Worlds {
             return self.unclear(reason, after);
         };
         match world.stand {
-            Stand::Known => self.answer_known(&world, &motion),
+            Stand::Known => self.answer_known(&world, &motion, command.guard),
             Stand::OnLineFrom(start) if leads_back(command, &start) => {
                 // A part of a way that was looked at already, the other way round.
                 let after = self.placed(&world, start);
@@ -240,12 +246,12 @@ impl Worlds {
         }
     }
 
-    fn answer_known(&mut self, world: &World, motion: &Motion) -> Answer {
-        let guarded_from =
-            motion.force_limit_n.map(|_| Stand::OnLineFrom(world.plan.workcell().joints()));
-        let otherwise = guarded_from.map(|stand| self.keep(World { stand, ..world.clone() }));
+    fn answer_known(&mut self, world: &World, motion: &Motion, guard: Guard) -> Answer {
+        let may_end_before = matches!(guard, Guard::Ends(_));
+        let stand = Stand::OnLineFrom(world.plan.workcell().joints());
+        let otherwise = may_end_before.then(|| self.keep(World { stand, ..world.clone() }));
         let (outcome, plan) = world.plan.after(motion);
-        match outcome {
+        match outcome.and_then(|report| stopped_is_fault(report, guard)) {
             Ok(report) => {
                 let after = self.keep(World { plan, ..world.clone() });
                 let is_sure = world.knows_items;
@@ -314,10 +320,20 @@ impl Worlds {
     }
 }
 
+/// What came of a motion, as the machine takes it.
+fn stopped_is_fault(report: MotionReport, guard: Guard) -> Result<MotionReport, Fault> {
+    match (report.end, guard) {
+        (MotionEnd::StoppedByForce, Guard::Faults(Some(limit_n))) => {
+            Err(Fault::ForceLimit { force_n: report.peak_force_n, limit_n })
+        }
+        _ => Ok(report),
+    }
+}
+
 /// Whether a motion goes straight back to where a guarded one began.
 fn leads_back(command: &Command, start: &JointConfiguration) -> bool {
     let is_there = matches!(command.aim, Aim::Joints(to) if to.same_bits(start));
-    is_there && command.path == Path::Linear && command.force_limit_n.is_none()
+    is_there && command.path == Some(Path::Linear) && command.guard == Guard::None
 }
 
 impl World {

@@ -5,7 +5,7 @@
 //! being one, and then of those that called it. An action is taken back when its beginning is
 //! passed, so that a call is one also on the way out of what it has called.
 
-use crate::graph::NodeId;
+use crate::graph::{NOWHERE, NodeId};
 use crate::search::{Cost, Search, Way};
 use crate::{Horizon, Reach, is_never};
 use obverse_bytecode::{Extent, FunctionKind, Module, Recovery, Respond};
@@ -97,6 +97,34 @@ fn actions_begun(module: &Module) -> Vec<u32> {
     begun
 }
 
+impl Reach<'_> {
+    /// A node, and what was there before each fork around it in its function, outwards.
+    fn outwards(&self, node: NodeId) -> impl Iterator<Item = NodeId> + '_ {
+        let before = |node: &NodeId| Some(self.graph.before_fork(*node));
+        std::iter::successors(Some(node), move |node| before(node).filter(|&node| node != NOWHERE))
+    }
+
+    /// The context of the function that a node is in.
+    fn context_of_function(&self, node: NodeId) -> u32 {
+        let outermost = self.outwards(node).last().unwrap_or(node);
+        self.graph.owners[outermost as usize]
+    }
+
+    /// Whether there is a way to a node from the beginning of its function on which nothing stops.
+    fn is_clear_in_function(&self, node: NodeId) -> bool {
+        self.outwards(node).all(|node| self.facts.at(node).is_clear)
+    }
+
+    /// Whether something may stop going back from a node that its function has run, or that other
+    /// branches have.
+    fn may_stop_in_function(&self, node: NodeId) -> bool {
+        let around =
+            |node: NodeId| self.graph.contexts[self.graph.owners[node as usize] as usize].around;
+        let mut nodes = self.outwards(node).flat_map(|node| [node, around(node)]);
+        nodes.any(|node| !self.within.at(node).is_empty())
+    }
+}
+
 struct Asked<'m> {
     module: &'m Module,
     reach: Reach<'m>,
@@ -171,20 +199,21 @@ impl<'m> Asked<'m> {
     }
 
     fn within_sequence(&mut self, points: &[u32]) -> Option<ShortfallKind> {
-        let (reach, facts) = (&self.reach, &self.reach.facts);
+        let reach = &self.reach;
         let is_move = |node: NodeId| {
             let owner = reach.graph.owners[node as usize];
             self.is_move(reach.graph.contexts[owner as usize].function)
         };
         let is_clear_before = |node: NodeId| {
-            let entrances = reach.graph.entrances_of(reach.graph.owners[node as usize]);
+            let entrances = reach.graph.entrances_of(reach.context_of_function(node));
             entrances.iter().any(|entrance| {
-                reach.is_entered(entrance.before) && facts.at(entrance.before).is_clear
+                reach.is_entered(entrance.before) && reach.is_clear_in_function(entrance.before)
             })
         };
-        let is_clear = |node| facts.at(node).is_clear && (!is_move(node) || is_clear_before(node));
+        let is_clear =
+            |node| reach.is_clear_in_function(node) && (!is_move(node) || is_clear_before(node));
         let may_stop = Self::entered(reach, points)
-            .any(|(_, node)| !reach.within.at(node).is_empty() || is_move(node));
+            .any(|(_, node)| reach.may_stop_in_function(node) || is_move(node));
         let is_certain = !Self::entered(reach, points).any(|(_, node)| is_clear(node));
         let (way, _) = may_stop.then(|| self.nearest(points, u32::MAX, false)).flatten()?;
         Some(ShortfallKind::Stopped { way, after_actions: None, is_certain })

@@ -5,6 +5,7 @@
 //! call depends on the end of what it calls. So it takes time linear in the graph, also where
 //! functions call themselves.
 
+use crate::edges::Edges;
 use crate::graph::{Graph, NOWHERE, Node, NodeId};
 
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -18,15 +19,20 @@ pub(crate) struct Facts(Vec<Fact>);
 
 impl Facts {
     pub(crate) fn of(graph: &Graph) -> Self {
-        let users = Users::of(graph);
+        let users =
+            Edges::reversed(graph.nodes.len(), &|node, visit| graph.each_dependency(node, visit));
         let mut facts = Self(vec![Fact::default(); graph.nodes.len()]);
-        let is_entry = |id: &NodeId| matches!(graph.nodes[*id as usize], Node::Entry { .. });
-        let mut changed: Vec<NodeId> = (0..graph.nodes.len() as NodeId).filter(is_entry).collect();
-        for &entry in &changed {
-            facts.0[entry as usize] = Fact { is_reached: true, is_clear: true };
+        let mut changed = Vec::new();
+        for (id, node) in (0..).zip(&graph.nodes) {
+            match node {
+                Node::Entry { .. } => changed.push(id),
+                Node::Anywhere { .. } | Node::Around { .. } => {}
+                _ => continue,
+            }
+            facts.0[id as usize] = facts.derive(graph, id);
         }
         while let Some(node) = changed.pop() {
-            for &user in users.of_node(node) {
+            for &user in users.of_vertex(node) {
                 let fact = facts.derive(graph, user);
                 if std::mem::replace(&mut facts.0[user as usize], fact) != fact {
                     changed.push(user);
@@ -68,6 +74,23 @@ impl Facts {
                 let is_clear = is_reached && any(&mut before.into_iter()).is_clear;
                 Fact { is_reached, is_clear }
             }
+            Node::Join { fork } => {
+                let fork = &graph.forks[fork as usize];
+                let ends = graph.ends(fork).map(|(_, end)| self.at(end));
+                ends.fold(self.at(fork.before), |all, fact| Fact {
+                    is_reached: all.is_reached && fact.is_reached,
+                    is_clear: all.is_clear && fact.is_clear,
+                })
+            }
+            Node::Leave { at } => {
+                let before = self.at(graph.before_fork(at));
+                let at = self.at(at);
+                let is_reached = before.is_reached && at.is_reached;
+                Fact { is_reached, is_clear: before.is_clear && at.is_clear }
+            }
+            Node::Anywhere { .. } | Node::Around { .. } => {
+                Fact { is_reached: true, is_clear: false }
+            }
         }
     }
 }
@@ -89,7 +112,7 @@ impl Graph {
     /// What the facts of a node depend on.
     fn each_dependency(&self, node: NodeId, visit: &mut dyn FnMut(NodeId)) {
         match self.nodes[node as usize] {
-            Node::Entry { .. } => {}
+            Node::Entry { .. } | Node::Anywhere { .. } | Node::Around { .. } => {}
             Node::Horizon { before } => visit(before),
             Node::Merge { sources } => {
                 sources.into_iter().flatten().for_each(|source| visit(source.node));
@@ -104,39 +127,16 @@ impl Graph {
                 before.into_iter().filter(|&node| node != NOWHERE).for_each(&mut *visit);
                 visit(inside);
             }
+            Node::Join { fork } => {
+                let fork = &self.forks[fork as usize];
+                visit(fork.before);
+                let ends = self.ends(fork).map(|(_, end)| end);
+                ends.filter(|&end| end != NOWHERE).for_each(visit);
+            }
+            Node::Leave { at } => {
+                let before = self.before_fork(at);
+                [at, before].into_iter().filter(|&node| node != NOWHERE).for_each(visit);
+            }
         }
-    }
-}
-
-/// The nodes whose facts depend on each node.
-struct Users {
-    all: Vec<NodeId>,
-    bounds: Vec<u32>,
-}
-
-impl Users {
-    fn of(graph: &Graph) -> Self {
-        let mut bounds = vec![0_u32; graph.nodes.len() + 1];
-        for node in 0..graph.nodes.len() as NodeId {
-            graph.each_dependency(node, &mut |used| bounds[used as usize + 1] += 1);
-        }
-        for at in 1..bounds.len() {
-            bounds[at] += bounds[at - 1];
-        }
-        let mut all = vec![0; bounds.last().map_or(0, |&count| count as usize)];
-        let mut next = bounds.clone();
-        for node in 0..graph.nodes.len() as NodeId {
-            graph.each_dependency(node, &mut |used| {
-                let at = &mut next[used as usize];
-                all[*at as usize] = node;
-                *at += 1;
-            });
-        }
-        Self { all, bounds }
-    }
-
-    fn of_node(&self, node: NodeId) -> &[NodeId] {
-        let node = node as usize;
-        &self.all[self.bounds[node] as usize..self.bounds[node + 1] as usize]
     }
 }

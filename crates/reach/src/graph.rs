@@ -4,12 +4,15 @@
 //! A function is one pass over its code, since every join names its jump, and a row of instructions
 //! between two nodes shares the node before it. So the graph is linear in the program, and the sets
 //! of horizons, which are not, need not be written down. A function that is called while the
-//! [`flag`](crate::flag) is set is another *context* of it. Knows nothing of what stops.
+//! [`flag`](crate::flag) is set is another *context* of it; so is each branch of a fork, which
+//! [`fork`] adds. Knows nothing of what stops.
+
+mod fork;
 
 use crate::flag::{Flag, Touch};
+use crate::turns::Turns;
 use obverse_bytecode::Module;
 use obverse_isa::{Instr, Label};
-use std::ops::Range;
 
 pub(crate) type NodeId = u32;
 
@@ -45,24 +48,55 @@ pub(crate) enum Node {
     /// Behind a block with a reverse of its own, which is passed over: what was before it, and
     /// what was at its end.
     Block { before: ByFlag, inside: NodeId },
+    /// Behind a fork of which all branches have been run through.
+    Join { fork: u32 },
+    /// Behind a fork that was left: what was there in the branch that it was left from.
+    Leave { at: NodeId },
+    /// What a context may have run when another branch of a fork has its turn.
+    Anywhere { context: u32 },
+    /// What other branches may have run while a context is under way.
+    Around { context: u32 },
 }
 
-/// A function, called with the flag at a value.
+/// A function, called with the flag at a value; or a branch of a fork in it.
 #[derive(Clone, Debug)]
 pub(crate) struct Context {
     pub(crate) function: usize,
-    /// Its nodes.
-    pub(crate) nodes: Range<u32>,
     /// What is there at its end, by the flag.
     pub(crate) exits: ByFlag,
-    /// Where its points begin in those of the graph.
+    /// The fork that it is a branch of.
+    pub(crate) fork: Option<u32>,
+    /// The node of [`Node::Anywhere`]; nowhere in a module without forks, as the next.
+    pub(crate) anywhere: NodeId,
+    /// The node of [`Node::Around`].
+    pub(crate) around: NodeId,
+    /// Its horizons, calls and joins of forks, but for those in a block with a reverse of its own:
+    /// while that is run no other branch has its turn.
+    pub(crate) loose: Vec<NodeId>,
+    /// Where its points begin in those of the graph; those of a branch are among its function's.
     points: usize,
+}
+
+/// A fork, in one context.
+#[derive(Clone, Debug)]
+pub(crate) struct Fork {
+    pub(crate) pc: u32,
+    pub(crate) before: NodeId,
+    pub(crate) branches: Vec<Branch>,
+}
+
+/// A branch of a fork.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Branch {
+    pub(crate) context: u32,
+    /// The `fork.next` or `fork.join` that ends it.
+    pub(crate) end: u32,
 }
 
 /// Where a context is entered from.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Entrance {
-    /// The call.
+    /// The call, or the fork.
     pub(crate) pc: u32,
     pub(crate) before: NodeId,
     pub(crate) callee: u32,
@@ -90,14 +124,17 @@ pub(crate) struct Graph {
     pub(crate) by_function: Vec<[Option<u32>; 2]>,
     pub(crate) entrances: Vec<Entrance>,
     pub(crate) replacements: Vec<Replacement>,
+    pub(crate) forks: Vec<Fork>,
+    /// What is come to only if a turn may end while the flag is set.
+    pub(crate) set_at_turns: Vec<NodeId>,
     /// What is there behind each instruction of each context, by the flag.
     points: Vec<ByFlag>,
 }
 
 impl Graph {
     /// The graph of a module that keeps the rules of the verifier; `stops` says which instructions
-    /// are horizons.
-    pub(crate) fn of(module: &Module, stops: &dyn Fn(&Instr) -> bool) -> Self {
+    /// are horizons, and `turns` what is known of the flag where they end.
+    pub(crate) fn of(module: &Module, stops: &dyn Fn(&Instr) -> bool, turns: &Turns) -> Self {
         let graph = Self {
             nodes: Vec::new(),
             pcs: Vec::new(),
@@ -106,15 +143,20 @@ impl Graph {
             by_function: vec![[None; 2]; module.functions.len()],
             entrances: Vec::new(),
             replacements: Vec::new(),
+            forks: Vec::new(),
+            set_at_turns: Vec::new(),
             points: Vec::new(),
         };
-        let mut builder = Builder { module, stops, flag: Flag::of(module), graph };
+        let mut builder = Builder { module, stops, turns, flag: Flag::of(module), graph };
         if !module.functions.is_empty() {
             builder.context(0, false);
         }
         let mut done = 0;
-        while done < builder.graph.contexts.len() {
-            builder.function(done as u32);
+        while let Some(context) = builder.graph.contexts.get(done) {
+            // A branch is gone through with the function that it is in.
+            if context.fork.is_none() {
+                builder.function(done as u32);
+            }
             done += 1;
         }
         let mut graph = builder.graph;
@@ -147,6 +189,7 @@ impl Graph {
 struct Builder<'m> {
     module: &'m Module,
     stops: &'m dyn Fn(&Instr) -> bool,
+    turns: &'m Turns,
     flag: Flag,
     graph: Graph,
 }
@@ -156,12 +199,24 @@ impl Builder<'_> {
     fn context(&mut self, function: usize, flag: bool) -> u32 {
         let known = self.graph.by_function[function][usize::from(flag)];
         known.unwrap_or_else(|| {
-            let index = self.graph.contexts.len() as u32;
-            let context = Context { function, nodes: 0..0, exits: UNREACHED, points: 0 };
-            self.graph.contexts.push(context);
+            let first = self.module.functions[function].first;
+            let index = self.new_context(function, first, None);
             self.graph.by_function[function][usize::from(flag)] = Some(index);
             index
         })
+    }
+
+    fn new_context(&mut self, function: usize, pc: u32, fork: Option<u32>) -> u32 {
+        let context = self.graph.contexts.len() as u32;
+        let (mut anywhere, mut around) = (NOWHERE, NOWHERE);
+        if self.turns.has_forks() {
+            anywhere = self.node(context, pc, Node::Anywhere { context });
+            around = self.node(context, pc, Node::Around { context });
+        }
+        let (exits, loose, points) = (UNREACHED, Vec::new(), 0);
+        let new = Context { function, exits, fork, anywhere, around, loose, points };
+        self.graph.contexts.push(new);
+        context
     }
 
     /// One pass over the code of a context.
@@ -170,14 +225,17 @@ impl Builder<'_> {
         let (first, end) =
             (self.module.functions[function].first, self.module.functions[function].end);
         let is_set = self.graph.by_function[function][1] == Some(context);
-        let nodes = self.graph.nodes.len() as u32;
         let points = self.graph.points.len();
         let mut entry = UNREACHED;
         entry[usize::from(is_set)] = self.node(context, first, Node::Entry { context });
         self.graph.points.push(entry);
-        let mut pass = Pass { context, points, first, jumps_back: Vec::new() };
+        let (jumps_back, forks) = (Vec::new(), Vec::new());
+        let mut pass = Pass { context, points, first, jumps_back, forks, blocks: 0 };
         for pc in first + 1..end {
-            let state = self.step(&mut pass, pc);
+            let mut state = self.step(&mut pass, pc);
+            if self.module.code[pc as usize].ends_turn() && self.turns.is_in_fork(pc) {
+                state = self.turn(&pass, pc, state);
+            }
             self.graph.points.push(state);
         }
         for (node, flag, from) in std::mem::take(&mut pass.jumps_back) {
@@ -188,7 +246,6 @@ impl Builder<'_> {
         }
         let exits = self.graph.points[points..].iter().nth_back(1).copied();
         let done = &mut self.graph.contexts[context as usize];
-        done.nodes = nodes..self.graph.nodes.len() as u32;
         done.exits = exits.unwrap_or(UNREACHED);
         done.points = points;
     }
@@ -206,15 +263,26 @@ impl Builder<'_> {
         let instr = self.module.code[pc as usize];
         let before = self.point(pass, pc - 1);
         if (self.stops)(&instr) {
-            return before
-                .map(|before| self.unless_nowhere(pass, pc, before, Node::Horizon { before }));
+            return before.map(|before| {
+                let node = self.unless_nowhere(pass, pc, before, Node::Horizon { before });
+                self.loose(pass, node);
+                node
+            });
         }
         match instr {
             Instr::Call { function, .. } => self.call(pass, pc, before, function.index()),
+            Instr::BlockBegin {} => {
+                pass.blocks += 1;
+                before
+            }
             Instr::BlockSkip { from } => self.block(pass, pc, before, from, None),
             Instr::BlockReplace { from, function } => {
                 self.block(pass, pc, before, from, Some(function.index()))
             }
+            Instr::Fork { .. } => self.fork(pass, pc, before),
+            Instr::ForkNext {} => self.fork_next(pass, pc, before),
+            Instr::ForkJoin { .. } => self.fork_join(pass, pc, before),
+            Instr::ForkLeave { .. } => fork::leave(pass, pc),
             _ => match (instr.join_from(), self.flag.touch(self.module, pc as usize)) {
                 (Some(from), _) => self.join(pass, pc, &instr, from.0),
                 (None, Touch::Set(value)) => self.set(pass, pc, before, value),
@@ -268,12 +336,25 @@ impl Builder<'_> {
 
     /// The flag is set: whatever it was before.
     fn set(&mut self, pass: &Pass, pc: u32, before: ByFlag, value: bool) -> ByFlag {
-        let sources = before.map(|node| (node != NOWHERE).then_some(Source { node, until: pc }));
         let mut state = UNREACHED;
-        if sources.iter().any(Option::is_some) {
-            state[usize::from(value)] = self.node(pass.context, pc, Node::Merge { sources });
-        }
+        state[usize::from(value)] = self.merge(pass, pc, before);
         state
+    }
+
+    /// Either of two nodes, if any.
+    fn merge(&mut self, pass: &Pass, pc: u32, nodes: [NodeId; 2]) -> NodeId {
+        let sources = nodes.map(|node| (node != NOWHERE).then_some(Source { node, until: pc }));
+        match sources.iter().any(Option::is_some) {
+            true => self.node(pass.context, pc, Node::Merge { sources }),
+            false => NOWHERE,
+        }
+    }
+
+    /// Note what may have been run when another branch has its turn.
+    fn loose(&mut self, pass: &Pass, node: NodeId) {
+        if self.turns.has_forks() && pass.blocks == 0 && node != NOWHERE {
+            self.graph.contexts[pass.context as usize].loose.push(node);
+        }
     }
 
     fn call(&mut self, pass: &Pass, pc: u32, before: ByFlag, function: usize) -> ByFlag {
@@ -289,10 +370,13 @@ impl Builder<'_> {
         if before == UNREACHED {
             return UNREACHED;
         }
-        [false, true].map(|flag| match self.may_be(usize::from(flag)) {
+        let behind = [false, true].map(|flag| match self.may_be(usize::from(flag)) {
             true => self.node(pass.context, pc, Node::Call { before, contexts, flag }),
             false => NOWHERE,
-        })
+        });
+        // With whatever flag it returns, it has been called.
+        self.loose(pass, behind[0]);
+        behind
     }
 
     /// Whether the flag can have this value anywhere.
@@ -302,12 +386,13 @@ impl Builder<'_> {
 
     fn block(
         &mut self,
-        pass: &Pass,
+        pass: &mut Pass,
         pc: u32,
         at_end: ByFlag,
         from: Label,
         function: Option<usize>,
     ) -> ByFlag {
+        pass.blocks = pass.blocks.saturating_sub(1);
         let before = self.point(pass, from.0 - 1);
         at_end.map(|inside| {
             if let (Some(function), true) = (function, inside != NOWHERE) {
@@ -321,9 +406,14 @@ impl Builder<'_> {
 
 /// A pass over the code of a context.
 struct Pass {
+    /// Of the function, or of the innermost branch.
     context: u32,
     points: usize,
     first: u32,
     /// The joins of jumps that come later: the node, the flag, the jump.
     jumps_back: Vec<(NodeId, usize, u32)>,
+    /// The forks that are open.
+    forks: Vec<fork::Open>,
+    /// How many blocks with a reverse of their own are open, of the innermost branch or function.
+    blocks: u32,
 }

@@ -2,26 +2,33 @@
 //!
 //! Going back ends at a *horizon*: the newest instruction of class never that was run and not
 //! passed over, or the start. [`Reach::of`] finds for every point which horizons it may have, on
-//! all ways there: through calls, branches, loops, and blocks with a reverse of their own. It
-//! errs on one side: what a machine meets is always among them.
+//! all ways there: through calls, branches, loops, forks, and blocks with a reverse of their own.
+//! It errs on one side: what a machine meets is always among them.
+//!
+//! The branches of a fork run in turns, and there is one line of history: going back from a branch
+//! takes back the turns of the others, too. So what may stop it is also whatever another branch may
+//! have run by then. This relies on two rules of the machine: only branches of the innermost fork
+//! take turns, and a turn does not end in a block with a reverse of its own.
 //!
 //! It takes time and memory linear in the program: each function is looked at once or twice, calls
 //! are followed by what a function adds to what was there before, and of each set the first
 //! [`MAX_KEPT`] are kept; [`Reach::every`] and [`Reach::way`] ask for all of one point, and for the
 //! reasons, in time linear in the program for each question.
 //!
-//! Read `graph`, then `facts`, `sets` and `search`. Knows modules, and neither sources nor
-//! machines; that a run may also end in a fault or a trap is not its subject.
+//! Read `graph` and `graph/fork`, then `facts`, `sets` and `search`. Knows modules, and neither
+//! sources nor machines; that a run may also end in a fault or a trap is not its subject.
 
 mod asked;
 mod class;
 mod condense;
+mod edges;
 mod facts;
 mod few;
 mod flag;
 mod graph;
 mod search;
 mod sets;
+mod turns;
 
 pub use asked::{Shortfall, ShortfallKind, shortfalls};
 pub use class::Standing;
@@ -34,6 +41,7 @@ use obverse_bytecode::Module;
 use obverse_isa::{Class, Instr};
 use sets::{Beyond, Calls, Within};
 use std::collections::BTreeSet;
+use turns::Turns;
 
 /// Where going back ends.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
@@ -74,11 +82,21 @@ impl<'m> Reach<'m> {
 
     /// The same where other instructions are horizons.
     fn with(module: &'m Module, stops: &dyn Fn(&Instr) -> bool) -> Self {
-        let graph = Graph::of(module, stops);
-        let facts = Facts::of(&graph);
-        let within = Within::of(&graph, &facts);
+        let turns = Turns::of(module);
+        let mut graph = Graph::of(module, stops, &turns);
+        let mut facts = Facts::of(&graph);
+        let mut is_entered = sets::entered(&graph, &facts);
+        let is_come_to = |&node: &NodeId| {
+            facts.at(node).is_reached && is_entered[graph.owners[node as usize] as usize]
+        };
+        if graph.set_at_turns.iter().any(is_come_to) {
+            graph = Graph::of(module, stops, &turns.with_altered_flag());
+            facts = Facts::of(&graph);
+            is_entered = sets::entered(&graph, &facts);
+        }
+        let within = Within::of(&graph, &facts, &is_entered);
         let calls = Calls::of(module);
-        let beyond = Beyond::of(&graph, &facts, &within, &calls);
+        let beyond = Beyond::of(&graph, &facts, is_entered, &within, &calls);
         let standings = class::of_functions(module, &calls);
         Self { module, graph, facts, within, beyond, calls, standings }
     }

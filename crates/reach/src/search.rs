@@ -1,7 +1,7 @@
 //! Going back through the graph, for one question: every horizon of a point, the way to one, or the
 //! nearest within bounds.
 
-use crate::graph::{Node, NodeId, Source};
+use crate::graph::{Fork, Node, NodeId, Source};
 use crate::{Horizon, Reach};
 use std::cmp::Reverse;
 use std::collections::{BinaryHeap, HashMap};
@@ -15,6 +15,8 @@ pub enum Link {
     Within(u32),
     /// Out of what is run in place of the block that ends here, to before that block.
     InPlaceOf(u32),
+    /// Into another branch of this fork, which may have had turns.
+    Beside(u32),
 }
 
 /// How going back ends somewhere.
@@ -26,9 +28,26 @@ pub struct Way {
     pub horizon: Horizon,
 }
 
-/// A node, and whether it is met within a call: whose entry is not gone out of, since what lies
-/// before that call is looked at from the call.
-type State = (NodeId, bool);
+/// Where a node is met.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+enum Met {
+    /// On a way whose beginning is gone out of, to what has called it.
+    Open,
+    /// Within a branch that has been run through, whose beginning is not gone out of: what lies
+    /// before the fork is looked at from its join.
+    Branch,
+    /// Within a call, likewise, or anywhere in another branch: its actions are not counted.
+    Inner,
+}
+
+impl Met {
+    /// Where the ends of branches are met from a join.
+    fn within_branch(self) -> Self {
+        self.max(Self::Branch)
+    }
+}
+
+type State = (NodeId, Met);
 
 struct Step {
     cost: u32,
@@ -64,7 +83,7 @@ impl<'m> Reach<'m> {
         if let Some(function) = self.module.function_at(pc) {
             for node in self.nodes_before(function, pc) {
                 if self.is_entered(node) {
-                    search.add((node, false), 0, None, None);
+                    search.add((node, Met::Open), 0, None, None);
                 }
             }
             search.add_replaced(function);
@@ -91,7 +110,7 @@ impl<'s, 'm> Search<'s, 'm> {
 
     /// Begin at a node too, where it has already cost so much.
     pub(crate) fn begin(&mut self, node: NodeId, cost: u32) {
-        self.add((node, false), cost, None, None);
+        self.add((node, Met::Open), cost, None, None);
     }
 
     /// Visit horizons, those that cost least first, until the visitor has had enough.
@@ -109,7 +128,7 @@ impl<'s, 'm> Search<'s, 'm> {
                 Node::Horizon { .. } => {
                     Some(Horizon::Never(self.reach.graph.pcs[state.0 as usize]))
                 }
-                Node::Entry { context: 0 } if !state.1 => Some(Horizon::Start),
+                Node::Entry { context: 0 } if state.1 == Met::Open => Some(Horizon::Start),
                 _ => None,
             };
             if horizon.is_some_and(|horizon| !visit(self, horizon)) {
@@ -163,7 +182,7 @@ impl<'s, 'm> Search<'s, 'm> {
                 for before in replacement.before {
                     if reach.facts.at(before).is_reached {
                         let link = Some(Link::InPlaceOf(replacement.pc));
-                        self.add((before, false), 1, None, link);
+                        self.add((before, Met::Open), 1, None, link);
                     }
                 }
             }
@@ -171,53 +190,123 @@ impl<'s, 'm> Search<'s, 'm> {
     }
 
     fn expand(&mut self, state: State, cost: u32) {
-        let (node, is_within) = state;
-        let graph = &self.reach.graph;
-        let pc = graph.pcs[node as usize];
+        let (node, met) = state;
+        let reach = self.reach;
+        let (graph, pc) = (&reach.graph, reach.graph.pcs[node as usize]);
+        if met == Met::Open {
+            let owner = &graph.contexts[graph.owners[node as usize] as usize];
+            self.follow(state, cost, (owner.around, Met::Inner), pc, None);
+        }
         match graph.nodes[node as usize] {
             Node::Horizon { .. } => {}
-            Node::Entry { context } if !is_within => self.leave(state, cost, context),
+            Node::Entry { context } if met == Met::Open => self.leave(state, cost, context),
             Node::Entry { .. } => {}
             Node::Merge { sources } => {
                 for Source { node, until } in sources.into_iter().flatten() {
-                    self.follow(state, cost, (node, is_within), until, None);
+                    self.follow(state, cost, (node, met), until, None);
                 }
             }
             Node::Block { before, .. } => {
                 for before in before {
-                    self.follow(state, cost, (before, is_within), pc, None);
+                    self.follow(state, cost, (before, met), pc, None);
                 }
             }
             Node::Call { .. } => {
                 for (before, exit) in graph.passages(node) {
-                    if self.reach.facts.at(before).is_reached {
-                        self.enter(state, cost, exit, pc);
-                        if self.reach.facts.at(exit).is_clear {
-                            self.follow(state, cost, (before, is_within), pc, None);
+                    if reach.facts.at(before).is_reached {
+                        self.enter(state, cost, exit, Link::Within(pc));
+                        if reach.facts.at(exit).is_clear {
+                            self.follow(state, cost, (before, met), pc, None);
                         }
                     }
                 }
             }
+            Node::Join { fork } => self.join(state, cost, &graph.forks[fork as usize]),
+            Node::Leave { at } => self.left(state, cost, at),
+            Node::Anywhere { .. } | Node::Around { .. } => self.other(state, cost),
         }
     }
 
-    fn enter(&mut self, state: State, cost: u32, exit: NodeId, call: u32) {
-        if self.reach.facts.at(exit).is_reached {
-            let more = u32::from(matches!(self.cost, Cost::Links));
-            self.add((exit, true), cost + more, Some(state), Some(Link::Within(call)));
+    /// Into branches that have been run through; and to before the fork, if nothing stops in any.
+    fn join(&mut self, state: State, cost: u32, fork: &Fork) {
+        let (reach, met) = (self.reach, state.1);
+        for (branch, end) in reach.graph.ends(fork) {
+            self.follow(state, cost, (end, met.within_branch()), branch.end, None);
+        }
+        if reach.graph.ends(fork).all(|(_, end)| reach.facts.at(end).is_clear) {
+            let join = reach.graph.pcs[state.0 as usize];
+            self.follow(state, cost, (fork.before, met), join, None);
         }
     }
 
-    /// Out of a context, to each place that it is called from.
+    /// Into the branch that a fork was left from, and the others; and to before the fork, of whose
+    /// actions who knows how many were run.
+    fn left(&mut self, state: State, cost: u32, at: NodeId) {
+        let (reach, met) = (self.reach, state.1);
+        let context = reach.graph.owners[at as usize];
+        let until = reach.graph.pcs[at as usize];
+        self.follow(state, cost, (at, met.within_branch()), until, None);
+        self.beside(state, cost, context);
+        if let (Some(fork), true) = (reach.graph.fork_of(context), reach.facts.at(at).is_clear) {
+            self.follow(state, cost, (fork.before, met), fork.pc, None);
+        }
+    }
+
+    /// Into the other branches of the fork that a context is a branch of.
+    fn beside(&mut self, state: State, cost: u32, context: u32) {
+        let graph = &self.reach.graph;
+        if let Some(fork) = graph.fork_of(context) {
+            for other in graph.beside(context) {
+                self.enter(state, cost, other, Link::Beside(fork.pc));
+            }
+        }
+    }
+
+    /// What may have been run in turns between.
+    fn other(&mut self, state: State, cost: u32) {
+        let reach = self.reach;
+        let graph = &reach.graph;
+        match graph.nodes[state.0 as usize] {
+            Node::Anywhere { context } => {
+                for &loose in &graph.contexts[context as usize].loose {
+                    let pc = graph.pcs[loose as usize];
+                    let is_call = matches!(graph.nodes[loose as usize], Node::Call { .. });
+                    let link = is_call.then_some(Link::Within(pc));
+                    graph.each_run_by(&reach.facts, loose, &mut |node| {
+                        self.follow(state, cost, (node, Met::Inner), pc, link);
+                    });
+                }
+            }
+            Node::Around { context } => {
+                self.beside(state, cost, context);
+                graph.each_around(context, &mut |entrance| {
+                    if reach.is_entered(entrance.before) {
+                        let owner = graph.owners[entrance.before as usize] as usize;
+                        let around = (graph.contexts[owner].around, Met::Inner);
+                        let link = Some(Link::CalledFrom(entrance.pc));
+                        self.follow(state, cost, around, entrance.pc, link);
+                    }
+                });
+            }
+            _ => {}
+        }
+    }
+
+    fn enter(&mut self, state: State, cost: u32, inner: NodeId, link: Link) {
+        self.follow(state, cost, (inner, Met::Inner), 0, Some(link));
+    }
+
+    /// Out of a context, to each place that it is entered from.
     fn leave(&mut self, state: State, cost: u32, context: u32) {
         let reach = self.reach;
-        if !(self.leaves)(reach.graph.contexts[context as usize].function) {
+        let is_branch = reach.graph.contexts[context as usize].fork.is_some();
+        if !is_branch && !(self.leaves)(reach.graph.contexts[context as usize].function) {
             return;
         }
         for entrance in reach.graph.entrances_of(context) {
             if reach.is_entered(entrance.before) {
-                let link = Some(Link::CalledFrom(entrance.pc));
-                self.follow(state, cost, (entrance.before, false), entrance.pc, link);
+                let link = (!is_branch).then_some(Link::CalledFrom(entrance.pc));
+                self.follow(state, cost, (entrance.before, Met::Open), entrance.pc, link);
             }
         }
     }
@@ -230,7 +319,7 @@ impl<'s, 'm> Search<'s, 'm> {
         let more = match self.cost {
             Cost::Links => u32::from(link.is_some()),
             // What a call has called is the call's action.
-            Cost::Actions(..) if to.1 => 0,
+            Cost::Actions(..) if to.1 == Met::Inner => 0,
             Cost::Actions(begun, _) => {
                 let at = self.reach.graph.pcs[to.0 as usize] as usize;
                 begun[until as usize].saturating_sub(begun[at])

@@ -5,6 +5,7 @@
 
 use crate::Horizon;
 use crate::condense::Components;
+use crate::edges::Edges;
 use crate::facts::Facts;
 use crate::few::Few;
 use crate::graph::{Graph, NOWHERE, Node, NodeId};
@@ -16,10 +17,12 @@ pub(crate) struct Within {
 }
 
 impl Within {
-    pub(crate) fn of(graph: &Graph, facts: &Facts) -> Self {
-        let sources = |node| local_sources(graph, facts, node);
+    pub(crate) fn of(graph: &Graph, facts: &Facts, is_entered: &[bool]) -> Self {
+        let sources = Edges::of(graph.nodes.len(), &|node, visit| {
+            each_source(graph, facts, is_entered, node, visit);
+        });
         let components =
-            Components::of(graph.nodes.len(), |node, at| sources(node).get(at).copied().flatten());
+            Components::of(graph.nodes.len(), |node, at| sources.of_vertex(node).get(at).copied());
         let mut sets: Vec<Few> = Vec::with_capacity(components.len());
         for members in components.iter() {
             let mut set = Few::default();
@@ -29,7 +32,7 @@ impl Within {
                 {
                     set.add(&Few::of(Horizon::Never(graph.pcs[node as usize])));
                 }
-                for source in sources(node).into_iter().map_while(|source| source) {
+                for &source in sources.of_vertex(node) {
                     let of = components.of[source as usize] as usize;
                     // One of this component is not there yet, and adds nothing.
                     sets.get(of).into_iter().for_each(|other| set.add(other));
@@ -47,18 +50,22 @@ impl Within {
     }
 }
 
-/// The nodes from which a node has its horizons, within its context. The first are there.
-fn local_sources(graph: &Graph, facts: &Facts, node: NodeId) -> [Option<NodeId>; 4] {
-    let mut found = [None; 4];
-    let mut next = 0;
+/// Visit the nodes from which a node has its horizons, within its context.
+fn each_source(
+    graph: &Graph,
+    facts: &Facts,
+    is_entered: &[bool],
+    node: NodeId,
+    visit: &mut dyn FnMut(NodeId),
+) {
+    let is_reached = |node: NodeId| facts.at(node).is_reached;
     let mut add = |node: NodeId| {
-        if facts.at(node).is_reached {
-            found[next] = Some(node);
-            next += 1;
+        if is_reached(node) {
+            visit(node);
         }
     };
     match graph.nodes[node as usize] {
-        _ if !facts.at(node).is_reached => {}
+        _ if !is_reached(node) => {}
         Node::Entry { .. } | Node::Horizon { .. } => {}
         Node::Merge { sources } => {
             sources.into_iter().flatten().for_each(|source| add(source.node));
@@ -66,7 +73,7 @@ fn local_sources(graph: &Graph, facts: &Facts, node: NodeId) -> [Option<NodeId>;
         Node::Block { before, .. } => before.into_iter().for_each(add),
         Node::Call { .. } => {
             for (before, exit) in graph.passages(node) {
-                if facts.at(before).is_reached {
+                if is_reached(before) {
                     add(exit);
                     if facts.at(exit).is_clear {
                         add(before);
@@ -74,13 +81,40 @@ fn local_sources(graph: &Graph, facts: &Facts, node: NodeId) -> [Option<NodeId>;
                 }
             }
         }
+        Node::Join { fork } => {
+            let fork = &graph.forks[fork as usize];
+            graph.ends(fork).for_each(|(_, end)| add(end));
+            if graph.ends(fork).all(|(_, end)| facts.at(end).is_clear) {
+                add(fork.before);
+            }
+        }
+        Node::Leave { at } => {
+            add(at);
+            graph.beside(graph.owners[at as usize]).for_each(&mut add);
+            if facts.at(at).is_clear {
+                add(graph.before_fork(at));
+            }
+        }
+        Node::Anywhere { context } => {
+            for &loose in &graph.contexts[context as usize].loose {
+                graph.each_run_by(facts, loose, &mut add);
+            }
+        }
+        Node::Around { context } => {
+            graph.beside(context).for_each(&mut add);
+            graph.each_around(context, &mut |entrance| {
+                let owner = graph.owners[entrance.before as usize] as usize;
+                if is_entered[owner] && is_reached(entrance.before) {
+                    add(graph.contexts[owner].around);
+                }
+            });
+        }
     }
-    found
 }
 
 /// The horizons beyond the entries of contexts, and around functions that replace a block.
 pub(crate) struct Beyond {
-    /// By context: whether it is entered by calls from the start.
+    /// By context: whether it is entered by calls and forks from the start.
     pub(crate) is_entered: Vec<bool>,
     /// By context: the horizons of its entry.
     pub(crate) entries: Vec<Few>,
@@ -89,8 +123,13 @@ pub(crate) struct Beyond {
 }
 
 impl Beyond {
-    pub(crate) fn of(graph: &Graph, facts: &Facts, within: &Within, calls: &Calls) -> Self {
-        let is_entered = entered(graph, facts);
+    pub(crate) fn of(
+        graph: &Graph,
+        facts: &Facts,
+        is_entered: Vec<bool>,
+        within: &Within,
+        calls: &Calls,
+    ) -> Self {
         let entries = entries(graph, facts, within, &is_entered);
         let mut beyond = Self { is_entered, entries, around: Vec::new() };
         beyond.around = beyond.replaced(graph, facts, within, calls);
@@ -108,6 +147,7 @@ impl Beyond {
             return Few::default();
         }
         let mut set = within.at(node);
+        set.add(&within.at(graph.contexts[owner].around));
         if fact.is_clear {
             set.add(&self.entries[owner]);
         }
@@ -153,7 +193,8 @@ impl Beyond {
     }
 }
 
-fn entered(graph: &Graph, facts: &Facts) -> Vec<bool> {
+/// By context: whether it is entered by calls and forks from the start.
+pub(crate) fn entered(graph: &Graph, facts: &Facts) -> Vec<bool> {
     let mut calls: Vec<Vec<u32>> = vec![Vec::new(); graph.contexts.len()];
     for entrance in &graph.entrances {
         if facts.at(entrance.before).is_reached {
@@ -176,7 +217,9 @@ fn entries(graph: &Graph, facts: &Facts, within: &Within, is_entered: &[bool]) -
     for entrance in &graph.entrances {
         let (fact, owner) = (facts.at(entrance.before), graph.owners[entrance.before as usize]);
         if fact.is_reached && is_entered[owner as usize] {
-            own[entrance.callee as usize].add(&within.at(entrance.before));
+            let callee = &mut own[entrance.callee as usize];
+            callee.add(&within.at(entrance.before));
+            callee.add(&within.at(graph.contexts[owner as usize].around));
             if fact.is_clear {
                 callers[entrance.callee as usize].push(owner);
             }

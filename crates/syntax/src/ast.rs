@@ -558,6 +558,8 @@ pub enum StatementKind<'s> {
     },
     /// `loop { … }`: for ever, until `break` or an error.
     Loop(Block<'s>),
+    /// `fork { … } and { … }`: the branches in turns, until all are done.
+    Fork(Vec<Block<'s>>),
     /// `break`: out of the innermost loop.
     Break,
     /// `return`: out of the sequence.
@@ -624,23 +626,26 @@ impl<'s> Statement<'s> {
 
     /// The blocks in it, in the order of the text.
     #[must_use]
-    pub fn blocks(&self) -> [Option<&Block<'s>>; 2] {
+    pub fn blocks(&self) -> Vec<&Block<'s>> {
         match &self.kind {
-            StatementKind::If { then, otherwise, .. } => [Some(then), otherwise.as_ref()],
-            StatementKind::WaitUntil { otherwise, .. } => [otherwise.as_ref(), None],
+            StatementKind::If { then, otherwise, .. } => {
+                std::iter::once(then).chain(otherwise).collect()
+            }
+            StatementKind::WaitUntil { otherwise, .. } => otherwise.iter().collect(),
             StatementKind::While { body, .. }
             | StatementKind::Repeat { body, .. }
             | StatementKind::For { body, .. }
-            | StatementKind::Loop(body) => [Some(body), None],
+            | StatementKind::Loop(body) => vec![body],
             StatementKind::Speed { block, .. } | StatementKind::Tool { block, .. } => {
-                [block.as_ref(), None]
+                block.iter().collect()
             }
+            StatementKind::Fork(branches) => branches.iter().collect(),
             StatementKind::Irreversible { block, .. }
             | StatementKind::SkipInReverse(block)
             | StatementKind::KeepInReverse(block)
-            | StatementKind::WithInReverse { block, .. } => [Some(block), None],
+            | StatementKind::WithInReverse { block, .. } => vec![block],
             StatementKind::ReplaceInReverse { block, replacement } => {
-                [Some(block), Some(replacement)]
+                vec![block, replacement]
             }
             StatementKind::Move { .. }
             | StatementKind::Advance(_)
@@ -656,7 +661,7 @@ impl<'s> Statement<'s> {
             | StatementKind::Checkpoint(_)
             | StatementKind::Barrier(_)
             | StatementKind::Throw(_)
-            | StatementKind::Allow(_) => [None, None],
+            | StatementKind::Allow(_) => Vec::new(),
         }
     }
 }

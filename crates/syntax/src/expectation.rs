@@ -128,6 +128,7 @@ const STATEMENTS: &[&str] = &[
     "checkpoint",
     "do",
     "for",
+    "fork",
     "if",
     "io",
     "irreversible",

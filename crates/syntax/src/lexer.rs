@@ -2,6 +2,7 @@
 //! words told from others, what is foreign reported and replaced, what is too deep refused. It
 //! knows the text around a token, and nothing of the grammar.
 
+use crate::ahead::{ascii_word_length, degree_sign, is_before_assignment, unit_length};
 use crate::codes::Code;
 use crate::diagnostic::{Diagnostic, Suggestion};
 use crate::foreign;
@@ -10,7 +11,7 @@ use crate::nesting::{Nesting, Refusal};
 use crate::sink::{MAX_IDLE_TOKENS, Sink, Stopped};
 use crate::span::Span;
 use crate::surroundings::Surroundings;
-use crate::token::{Token, UNITS};
+use crate::token::Token;
 use crate::tree;
 use crate::{MAX_NESTING, MAX_OPERATORS};
 use logos::Logos;
@@ -563,48 +564,6 @@ impl Iterator for Lexer<'_, '_> {
             self.previous_end = end as usize;
             return Some(Ok((start, token, end)));
         }
-    }
-}
-
-/// The length of the word that a text begins with.
-fn ascii_word_length(text: &str) -> usize {
-    let is_word_byte = |byte: &u8| byte.is_ascii_alphanumeric() || *byte == b'_';
-    let begins = text.bytes().next().is_some_and(|byte| !byte.is_ascii_digit());
-    if begins { text.bytes().take_while(is_word_byte).count() } else { 0 }
-}
-
-/// The length of a `°` that a text begins with, and of the blanks before it.
-fn degree_sign(text: &str) -> Option<usize> {
-    let sign = text.trim_start_matches([' ', '\t']);
-    sign.starts_with('°').then_some(text.len() - sign.len() + '°'.len_utf8())
-}
-
-/// The length of the unit that a text begins with: `mm`, or `mm/s` written without blanks.
-fn unit_length(text: &str) -> Option<usize> {
-    let word = ascii_word_length(text);
-    let after = &text[word..];
-    if let Some(per) = after.strip_prefix('/') {
-        let whole = word + 1 + ascii_word_length(per);
-        if UNITS.contains(&&text[..whole]) {
-            return Some(whole);
-        }
-    }
-    UNITS.contains(&&text[..word]).then_some(word)
-}
-
-/// Whether a text goes on, after blanks and comments, with `=`, `+=`, `-=` or the foreign `:=`.
-fn is_before_assignment(text: &str) -> bool {
-    let mut rest = text.as_bytes();
-    loop {
-        rest = rest.trim_ascii_start();
-        let Some(comment) = rest.strip_prefix(b"//") else { break };
-        let line = comment.iter().position(|byte| matches!(byte, b'\n' | b'\r'));
-        rest = &comment[line.unwrap_or(comment.len())..];
-    }
-    match rest {
-        [b'=', b'=', ..] => false,
-        [b'=', ..] | [b'+' | b'-' | b':', b'=', ..] => true,
-        _ => false,
     }
 }
 

@@ -5,6 +5,7 @@
 //! reversal) is not known here.
 
 mod advice;
+mod ahead;
 pub mod ast;
 pub mod codes;
 pub mod diagnostic;

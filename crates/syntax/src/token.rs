@@ -90,9 +90,9 @@ tokens! {
     reserved {
         Advance "advance" And "and" Barrier "barrier" Break "break" Call "call"
         Checkpoint "checkpoint" Distance "distance" Do "do" Else "else" False "false" For "for"
-        Force "force" Holding "holding" If "if" Input "input" Io "io" Irreversible "irreversible"
-        Keep "keep"
-        Loop "loop" Mod "mod" Move "move" Not "not" Or "or" Repeat "repeat" Return "return"
+        Force "force" Fork "fork" Holding "holding" If "if" Input "input" Io "io"
+        Irreversible "irreversible" Keep "keep" Loop "loop" Mod "mod" Move "move" Not "not" Or "or"
+        Repeat "repeat" Return "return"
         Sequence "sequence" Set "set" Skip "skip" Sleep "sleep" Throw "throw" To "to"
         Toggle "toggle" True "true" Until "until" Var "var" Wait "wait" While "while"
     }
@@ -140,6 +140,7 @@ impl Token {
                 | Checkpoint
                 | Do
                 | For
+                | Fork
                 | If
                 | Io
                 | Irreversible

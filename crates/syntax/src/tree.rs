@@ -254,6 +254,11 @@ pub(crate) fn if_ending<'s>(
     kind
 }
 
+/// Branches in their order.
+pub(crate) fn fork<'s>(first: Block<'s>, others: Vec<Block<'s>>) -> StatementKind<'s> {
+    StatementKind::Fork(std::iter::once(first).chain(others).collect())
+}
+
 /// A block of one statement, for `else if`.
 pub(crate) fn block_of(kind: StatementKind<'_>, start: u32, end: u32) -> Block<'_> {
     let span = Span::new(start, end);

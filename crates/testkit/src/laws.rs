@@ -3,17 +3,22 @@
 //!
 //! A law panics where it does not hold, with the program and what is different, and else says
 //! whether there was anything to compare.
+//!
+//! The interpreter runs the branches of a fork one after the other, the machine in turns. Of
+//! programs with a fork, therefore, the end is compared and what each device was told, and going
+//! back is compared with the machine's own way forward.
 
-use crate::logged::Logged;
+use crate::logged::{Command, Logged};
 use crate::programs::{self, Options};
 use crate::reference::{self, Ending, Outcome, StateCopy};
 use arbitrary::{Result, Unstructured};
 use obverse_bytecode::{Verified, verify};
 use obverse_compiler::compile;
+use obverse_isa::Instr;
 use obverse_syntax::diagnostic::Severity;
 use obverse_vm::{Direction, Limits, Machine, Mark, Stop, Trap, TrapKind};
 use obverse_workcell::{Arm, DigitalIo, Fault, Gripper, Workcell};
-use std::collections::{HashMap, HashSet};
+use std::collections::{BTreeMap, HashMap, HashSet};
 use std::fmt::Debug;
 
 /// The longest run that is compared, in statements of the reference interpreter.
@@ -56,7 +61,10 @@ pub fn agrees_forward_on(source: &str, seed: u64) -> bool {
     };
     let same_end = is_same_end(&expected.ending, &stop);
     case.require(same_end, || format!("it ended otherwise: {:?}, {stop:?}", expected.ending));
-    case.same("the command", "", &cell.log, &expected_cell.log);
+    match case.has_fork() {
+        true => case.same("a device", "", &by_device(&cell.log), &by_device(&expected_cell.log)),
+        false => case.same("the command", "", &cell.log, &expected_cell.log),
+    }
     case.compare("at the end", &expected.last, &machine, &cell);
     true
 }
@@ -77,6 +85,9 @@ pub fn agrees_backward(u: &mut Unstructured<'_>) -> Result<bool> {
 pub fn agrees_backward_on(source: &str, seed: u64) -> bool {
     let case = Case::new(source);
     let Some((expected, _)) = case.reference(seed) else { return false };
+    if case.has_fork() {
+        return case.retraces(seed);
+    }
     let starts = case.starts(&expected.history);
     let history: Vec<&StateCopy> =
         expected.history.iter().filter(|copy| starts.contains_key(&copy.span.start)).collect();
@@ -153,6 +164,52 @@ impl<'s> Case<'s> {
         starts
     }
 
+    /// Whether some of it runs in turns.
+    fn has_fork(&self) -> bool {
+        let code = &self.program.module().code;
+        code.iter().any(|instr| matches!(instr, Instr::Fork { .. }))
+    }
+
+    /// Step by step the machine goes back through the states that it went forward through, down to
+    /// the start or to what cannot be taken back; a run at once comes to the same end.
+    fn retraces(&self, seed: u64) -> bool {
+        let mut cell = Logged::new(seed);
+        let mut machine = self.machine(&cell);
+        let mut way = Vec::new();
+        loop {
+            way.push(place(&machine, &cell));
+            match machine.step(Direction::Forward, &mut cell, &mut ()) {
+                Ok(()) | Err(Stop::Raised { .. }) => {}
+                Err(_) => break,
+            }
+        }
+        // A trap has led back to before its statement.
+        let end = way.iter().rposition(|there| *there == place(&machine, &cell));
+        self.require(end.is_some(), || "the end was not on the way".to_owned());
+        way.truncate(end.map_or(0, |end| end + 1));
+        let (steps, log) = (way.len(), cell.log.clone());
+        while let Some(there) = way.pop() {
+            self.same("the place", "in reverse", &place(&machine, &cell), &there);
+            let mut stepped = machine.step(Direction::Reverse, &mut cell, &mut ());
+            while stepped.as_ref().is_err_and(is_held_back) {
+                stepped = machine.step(Direction::Reverse, &mut cell, &mut ());
+            }
+            match stepped {
+                Ok(()) => {}
+                Err(Stop::AtStart) if way.is_empty() => {}
+                Err(Stop::Refused(_)) => break,
+                Err(stop) => self.require(false, || format!("reverse stopped: {stop:?}")),
+            }
+        }
+        let mut cell = Logged::new(seed);
+        let mut machine = self.machine(&cell);
+        while let Stop::Raised { .. } =
+            machine.run(Direction::Forward, Limits::NONE, &mut cell, &mut ())
+        {}
+        self.same("the commands", "of a run", &cell.log, &log);
+        steps > 1
+    }
+
     /// What must hold.
     #[track_caller]
     fn require(&self, holds: bool, otherwise: impl FnOnce() -> String) {
@@ -222,6 +279,27 @@ impl<'s> Case<'s> {
             self.same(&format!("the counter {index}"), when, &found, expected);
         }
     }
+}
+
+/// What the arm was told, what each output was told, and how long was waited, in any order.
+type ByDevice = (Vec<Command>, BTreeMap<u16, Vec<bool>>, Vec<u64>);
+
+fn by_device(log: &[Command]) -> ByDevice {
+    let (mut arm, mut outputs, mut waits) = ByDevice::default();
+    for command in log {
+        match command {
+            Command::Execute(_) => arm.push(*command),
+            Command::Output(bit, level) => outputs.entry(*bit).or_default().push(*level),
+            Command::Wait(duration_s) => waits.push(duration_s.to_bits()),
+        }
+    }
+    waits.sort_unstable();
+    (arm, outputs, waits)
+}
+
+/// How far a run is, and the state there.
+fn place(machine: &Machine<'_>, cell: &Logged) -> (Mark, u64) {
+    (machine.mark(), machine.digest(cell))
 }
 
 /// The program gave it its name.

@@ -29,6 +29,7 @@ pub struct Logged {
     /// Whether every draw is the same and nothing is ever in the way.
     pub is_steady: bool,
     last: MotionReport,
+    motions: u64,
 }
 
 impl Logged {
@@ -37,7 +38,7 @@ impl Logged {
     pub fn new(seed: u64) -> Self {
         let ledger = Ledger::new(seed);
         let last = ledger.last_motion();
-        Self { ledger, log: Vec::new(), is_steady: false, last }
+        Self { ledger, log: Vec::new(), is_steady: false, last, motions: 0 }
     }
 
     /// The same workcell, in which every draw is the same and nothing is ever in the way.
@@ -46,9 +47,10 @@ impl Logged {
         Self { is_steady: true, ..self }
     }
 
-    /// Whether the motion that is logged now meets something, if it feels for it.
+    /// Whether the motion that is counted last meets something, if it feels for it: whatever other
+    /// devices were told meanwhile.
     fn meets_something(&self) -> bool {
-        !self.is_steady && (self.ledger.seed ^ self.log.len() as u64).is_multiple_of(3)
+        !self.is_steady && (self.ledger.seed ^ self.motions).is_multiple_of(3)
     }
 }
 
@@ -59,6 +61,7 @@ impl Arm for Logged {
 
     fn execute(&mut self, motion: &Motion) -> Result<MotionReport, Fault> {
         self.log.push(Command::Execute(*motion));
+        self.motions += 1;
         let start = self.ledger.joints;
         self.last = self.ledger.execute(motion)?;
         if let Some(limit_n) = motion.force_limit_n.filter(|_| self.meets_something()) {

@@ -3,11 +3,13 @@
 //! Programs are generated, and so are workcells around them, with fixtures in the way. The run is
 //! one without chance: everything is where the workcell file says.
 
+use crate::code;
 use crate::programs::{self, Options};
 use arbitrary::{Result, Unstructured};
-use obverse_bytecode::{Module, Verified, verify};
+use obverse_bytecode::{Constant, Module, Verified, disassemble, verify};
 use obverse_compiler::compile;
 use obverse_geometry::Pose;
+use obverse_isa::{Axis, Frame, Instr};
 use obverse_preflight::{Grade, Graded, Report, check};
 use obverse_sim::cell::{FixtureSpec, InputRule, ItemSpec, OffsetSpec, Part, Shape, ToolSpec};
 use obverse_sim::{Cell, Sim};
@@ -31,6 +33,31 @@ pub fn foretells(u: &mut Unstructured<'_>) -> Result<bool> {
     let Some(module) = compile("program.obv", &source).module else {
         panic!("it does not compile\n{source}")
     };
+    Ok(compared(module, &source, seed)?.moves > 0)
+}
+
+/// The same of modules, in which several branches of a fork command the arm. Only runs in which
+/// the arm moves while a fork is open count.
+///
+/// # Errors
+/// Those of the randomness.
+pub fn foretells_of_modules(u: &mut Unstructured<'_>) -> Result<bool> {
+    let seed = u.arbitrary()?;
+    let mut module = code::module(u, code::Options { never: true, blocks: true })?;
+    for instr in &mut module.code {
+        if let Instr::OutputToggle { prefix, .. } = *instr {
+            let (axis, frame) = (Axis::PlusZ, Frame::Base);
+            *instr = Instr::MoveRelative { prefix, axis, frame };
+        }
+    }
+    // As a length, one that the arm can go.
+    module.constants[2] = Constant::Real(0.01);
+    let text = disassemble(&module);
+    Ok(compared(module, &text, seed)?.in_forks > 0)
+}
+
+/// What was compared of a program, in a workcell that follows from a number.
+fn compared(module: Module, source: &str, seed: u64) -> Result<Compared> {
     let cell = cell(&mut Unstructured::new(&noise(seed)), &module)?;
     let program = match verify(module) {
         Ok(program) => program,
@@ -41,10 +68,18 @@ pub fn foretells(u: &mut Unstructured<'_>) -> Result<bool> {
         Err(errors) => panic!("it does not link: {errors:?}\n{source}"),
     };
     if !report.is_complete {
-        return Ok(false);
+        return Ok(Compared::default());
     }
-    let case = Case { source: &source, report: &report };
-    Ok(case.run(&program, &cell, seed))
+    Ok(Case { source, report: &report }.run(&program, &cell, seed))
+}
+
+/// How much was compared.
+#[derive(Clone, Copy, Default)]
+struct Compared {
+    /// How many moves, those that failed included.
+    moves: usize,
+    /// How many of those that were done belonged to a branch of a fork.
+    in_forks: usize,
 }
 
 /// A program and what the check says of it.
@@ -54,16 +89,15 @@ struct Case<'c> {
 }
 
 impl Case<'_> {
-    /// Whether anything was compared.
-    fn run(&self, program: &Verified, cell: &Cell, seed: u64) -> bool {
+    fn run(&self, program: &Verified, cell: &Cell, seed: u64) -> Compared {
         let mut sim = Sim::new(&cell.nominal(), seed);
         let mut machine = match Machine::new(program, &sim) {
             Ok(machine) => machine,
             Err(errors) => panic!("{errors:?}"),
         };
-        let mut is_compared = false;
+        let mut compared = Compared::default();
         for asked in [Direction::Forward, Direction::Reverse] {
-            let mut watch = Watch { case: self, asked, moves: 0 };
+            let mut watch = Watch { case: self, asked, compared };
             let stop = loop {
                 let limits = Limits::instructions(MAX_INSTRUCTIONS);
                 match machine.run(asked, limits, &mut sim, &mut watch) {
@@ -71,17 +105,18 @@ impl Case<'_> {
                     stop => break stop,
                 }
             };
-            is_compared |= watch.moves > 0;
+            compared = watch.compared;
             match stop {
                 Stop::Fault { fault, pc, .. } => {
                     self.faulted(pc, asked, &fault);
-                    return true;
+                    compared.moves += 1;
+                    break;
                 }
                 Stop::Finished => {}
                 _ => break,
             }
         }
-        is_compared
+        compared
     }
 
     fn graded(&self, pc: u32, asked: Direction) -> Option<&Graded> {
@@ -117,7 +152,7 @@ struct Watch<'c> {
     case: &'c Case<'c>,
     /// The way the run was asked to go: what replaces a block runs the other way round.
     asked: Direction,
-    moves: usize,
+    compared: Compared,
 }
 
 impl Observer for Watch<'_> {
@@ -125,7 +160,8 @@ impl Observer for Watch<'_> {
         if event.report.is_none() {
             return;
         }
-        self.moves += 1;
+        self.compared.moves += 1;
+        self.compared.in_forks += usize::from(!event.branches.is_empty());
         let (pc, asked, source) = (event.pc, self.asked, self.case.source);
         match self.case.graded(pc, asked) {
             None => panic!("{pc}, {asked:?}: it is done, and the check knows no way\n{source}"),

@@ -8,6 +8,7 @@ const NOTHING: Options = Options {
     allow_overrides: false,
     allow_errors: false,
     allow_traps: false,
+    allow_forks: false,
     max_statements: 80,
 };
 
@@ -42,6 +43,7 @@ fn what_is_not_allowed_is_not_there() {
         "keep in reverse",
         "} reverse io",
         "} reverse m",
+        "fork",
         "throw",
         "error",
     ];
@@ -89,6 +91,8 @@ fn every_statement_is_made_sometimes() {
         "repeat ",
         "for ",
         "loop {",
+        "fork {",
+        "} and {",
         "break",
         "return",
         "speed slow {",

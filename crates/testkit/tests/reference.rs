@@ -38,6 +38,7 @@ fn statements_do_what_they_say() {
     assert_eq!(after("repeat 4 times { x += 1 if x == 3 { break } }"), 3);
     assert_eq!(after("loop { x += 1 if x == 3 { return } } x = 9"), 3);
     assert_eq!(after("repeat 2 times { var y = 5 y += 1 x += y }"), 12);
+    assert_eq!(after("var y = 1 fork { x += 1 } and { y += 1 } and { wait 1 s } x += y"), 3);
     assert_eq!(after("skip in reverse { x += 1 } do { x += 10 } in reverse { x = 0 }"), 11);
     assert_eq!(after("if true { var n = 2 x = n } ending when x == 2"), 2);
 }

@@ -36,3 +36,4 @@ pub use pure::Calculator;
 pub use snapshot::SnapshotError;
 pub use state::{Direction, Frame, Pending, State};
 pub use stop::{Refusal, Stop, Trap, TrapKind};
+pub use task::{Branches, MAX_FORKS, branches};

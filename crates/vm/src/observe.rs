@@ -5,7 +5,7 @@ use obverse_isa::Instr;
 use obverse_workcell::{MotionReport, Workcell};
 
 /// Something that a machine did, for whoever tells or counts it.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Debug)]
 pub struct Event {
     /// Which way it was done.
     pub direction: Direction,
@@ -17,9 +17,12 @@ pub struct Event {
     pub report: Option<MotionReport>,
     /// How many calls are under way after it.
     pub frames: usize,
+    /// Which branch did it of each fork that is open, outermost first.
+    pub branches: Vec<usize>,
 }
 
-/// Who is told what a machine does. Told of acts, calls, returns, errors and the reversal words.
+/// Who is told what a machine does. Told of acts, calls, returns, errors, forks that are left,
+/// and the reversal words.
 pub trait Observer {
     /// It was done.
     fn on_event(&mut self, event: &Event, cell: &dyn Workcell);

@@ -107,10 +107,14 @@ impl Machine<'_> {
                 self.state.open_blocks = self.state.open_blocks.saturating_sub(1);
                 self.advance()
             }
-            Instr::Fork { .. }
-            | Instr::ForkNext {}
-            | Instr::ForkJoin { .. }
-            | Instr::ForkLeave { .. } => self.task_forward(at),
+            Instr::Fork { .. } | Instr::ForkNext {} | Instr::ForkJoin { .. } => {
+                self.task_forward(at)
+            }
+            Instr::ForkLeave { .. } => {
+                self.task_forward(at)?;
+                self.tell(Direction::Forward, at, None, host);
+                Ok(())
+            }
             _ => self.finish_forward(at, host, at + 1),
         }
     }
@@ -573,8 +577,8 @@ impl Machine<'_> {
             return;
         }
         let instr = self.program.module().code[at];
-        let frames = self.state.frames.len();
-        let event = Event { direction, pc: at as u32, instr, report, frames };
+        let (frames, branches) = (self.state.frames.len(), self.state.branches());
+        let event = Event { direction, pc: at as u32, instr, report, frames, branches };
         host.observer.on_event(&event, host.cell);
     }
 }

@@ -1,11 +1,12 @@
 //! Forks: branches of a program that run as tasks, in turns.
 //!
 //! A task is a place in the code and the calls under way there; the frame of the function that
-//! forks is everybody's. A turn ends when something was commanded of the workcell, or its branch
-//! has ended; then the next branch goes on that has not. The tape keeps one switch a turn: whose it
-//! was, and how many steps it took. So the turns are taken back in their order, whatever rule they
-//! were taken by. While an error is pending, and in a block with a reverse of its own, the turn
-//! does not end: the other tasks are held where they are, between statements.
+//! forks is everybody's. A turn ends when something was commanded of the workcell and what came of
+//! it has been read, or its branch has ended; then the next branch goes on that has not. The tape
+//! keeps one switch a turn: whose it was, and how many steps it took. So the turns are taken back
+//! in their order, whatever rule they were taken by. While an error is pending, and in a block with
+//! a reverse of its own, the turn does not end: the other tasks are held where they are, between
+//! statements.
 //!
 //! Knows nothing of what the statements of a turn do.
 
@@ -20,7 +21,7 @@ use obverse_tape::record::{self, HeldTask, Switch};
 use std::collections::BTreeMap;
 
 /// The most forks that may be open in one another.
-const MAX_FORKS: usize = 64;
+pub const MAX_FORKS: usize = 64;
 
 /// A fork that is open.
 #[derive(Clone, Debug)]
@@ -54,13 +55,16 @@ pub(crate) struct Task {
 
 /// The branches of a fork: the first instruction of each, and its last.
 #[derive(Clone, Debug)]
-pub(crate) struct Branches {
-    pub(crate) join: u32,
-    pub(crate) ends: Vec<(u32, u32)>,
+pub struct Branches {
+    /// Where the branches come together.
+    pub join: u32,
+    /// One a branch: its first instruction, and that at which it ends.
+    pub ends: Vec<(u32, u32)>,
 }
 
 /// The forks of a program by their first instruction.
-pub(crate) fn branches(code: &[Instr]) -> BTreeMap<u32, Branches> {
+#[must_use]
+pub fn branches(code: &[Instr]) -> BTreeMap<u32, Branches> {
     let mut forks = BTreeMap::new();
     // Of each fork that is open: where it is, the branches so far, where the next begins.
     let mut open: Vec<(u32, Branches, u32)> = Vec::new();
@@ -164,15 +168,15 @@ impl Machine<'_> {
         Ok(())
     }
 
-    /// After an instruction: the turn ends if it was an act, and nothing holds the other tasks.
+    /// After an instruction: the turn ends if it ends one, and nothing holds the other tasks.
     pub(crate) fn end_turn(&mut self, instr: Instr) {
         let Some(fork) = self.state.forks.last() else { return };
-        let is_act =
-            instr.info().family.commands_workcell() || matches!(instr, Instr::WaitInput { .. });
+        // What came of a motion is read before anybody else moves.
+        let is_read = self.program.module().code[self.state.place.pc].reads_motion();
         let is_held = !self.state.raised.is_empty()
             || self.state.open_blocks != fork.open_blocks
             || self.state.compensations.len() != fork.compensations;
-        if is_act && !is_held && fork.next().is_some() {
+        if instr.ends_turn() && !is_read && !is_held && fork.next().is_some() {
             self.pass_turn();
         }
     }

@@ -150,6 +150,9 @@ impl<'m> Words<'m> {
             Link::InPlaceOf(pc) => {
                 format!("on to before the block that it replaces, {}", self.statement(pc))
             }
+            Link::Beside(pc) => {
+                format!("back over turns of another branch of {}", self.statement(pc))
+            }
         };
         let last = match way.horizon {
             Horizon::Start => "to the start of the program".to_owned(),
@@ -157,7 +160,7 @@ impl<'m> Words<'m> {
         };
         // The start calls the first sequence without a word.
         let is_written = |link: &&Link| match **link {
-            Link::CalledFrom(pc) | Link::Within(pc) | Link::InPlaceOf(pc) => {
+            Link::CalledFrom(pc) | Link::Within(pc) | Link::InPlaceOf(pc) | Link::Beside(pc) => {
                 self.module.function_at(pc).is_some_and(|function| function > 0)
             }
         };

@@ -114,8 +114,9 @@ impl<'s> Checker<'s> {
             self.report_too_large(header, computed, held);
         }
         let counter = CounterId(self.frame.counters);
-        // Blocks are at most 64 deep in one another, so that there are enough counters.
+        // More than there is room for are reported at the end of the function.
         self.frame.counters = self.frame.counters.saturating_add(1);
+        self.frame.counter_peak = self.frame.counter_peak.max(self.frame.counters);
         self.frame.layout.counters = self.frame.layout.counters.max(self.frame.counters);
         let scope = self.names.open();
         if let Some(name) = name {

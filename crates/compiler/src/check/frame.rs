@@ -28,6 +28,8 @@ pub(crate) enum Around {
     },
     /// A block with a reverse of its own.
     Reversed(Span),
+    /// A branch of this fork.
+    Branch(Span),
 }
 
 /// The position that the program named last.
@@ -56,6 +58,8 @@ pub(crate) struct FrameScope {
     pub(crate) around: Vec<Around>,
     /// How many counters are in use.
     pub(crate) counters: u8,
+    /// How many were in use at a time, since the branch of a fork began.
+    pub(crate) counter_peak: u8,
     /// The position named last.
     pub(crate) named: NamedPosition,
     /// Whether what is being checked is never reached.
@@ -68,7 +72,8 @@ pub(crate) struct FrameScope {
     pub(crate) kept_positions: usize,
     hoists: Vec<Hoist>,
     busy: Vec<LocalId>,
-    free: Vec<LocalId>,
+    /// The hidden locals that nothing keeps.
+    pub(crate) free: Vec<LocalId>,
 }
 
 impl FrameScope {
@@ -82,6 +87,7 @@ impl FrameScope {
             readings: Readings::Taken,
             around: Vec::new(),
             counters: 0,
+            counter_peak: 0,
             named: NamedPosition::Lost("the sequence begins here, wherever the arm is", begins),
             is_dead: false,
             is_full: false,

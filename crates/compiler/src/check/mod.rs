@@ -7,6 +7,7 @@ mod control;
 mod declarations;
 mod errors;
 mod expression;
+mod fork;
 mod frame;
 mod function;
 mod guarded;

@@ -54,6 +54,7 @@ impl<'s> Checker<'s> {
             | Written::Repeat { .. }
             | Written::For { .. }
             | Written::Loop(_) => return self.control(written),
+            Written::Fork(branches) => return self.fork(branches, span.start),
             Written::Break => return self.leave_loop(span),
             Written::Return => return self.leave_sequence(span),
             Written::Speed { speed, block } => {
@@ -376,6 +377,13 @@ impl<'s> Checker<'s> {
                     return None;
                 }
             }
+            Some(Around::Branch(fork)) => {
+                let fork = *fork;
+                if self.leave_all_loops() {
+                    self.report_leaves_fork("break", span, fork);
+                    return None;
+                }
+            }
             None => {}
         }
         let message = "`break` stands in no loop".to_owned();
@@ -397,15 +405,13 @@ impl<'s> Checker<'s> {
     }
 
     fn leave_sequence(&mut self, span: Span) -> Checked {
-        let reversed = self.frame.around.iter().rev().find_map(|around| match around {
-            Around::Reversed(block) => Some(*block),
-            Around::Loop { .. } => None,
-        });
-        if let Some(block) = reversed {
-            self.report_leaves_reversed("return", span, block);
-            return None;
+        let is_loop = |around: &&Around| matches!(around, Around::Loop { .. });
+        match self.frame.around.iter().rev().find(|around| !is_loop(around)).copied() {
+            Some(Around::Reversed(block)) => self.report_leaves_reversed("return", span, block),
+            Some(Around::Branch(fork)) => self.report_leaves_fork("return", span, fork),
+            _ => return Some((self.done(StatementKind::Return, span), false)),
         }
-        Some((self.done(StatementKind::Return, span), false))
+        None
     }
 
     fn report_leaves_reversed(&mut self, word: &str, span: Span, block: Span) {

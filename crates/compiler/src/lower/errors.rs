@@ -8,7 +8,7 @@ use super::Lower;
 use super::leave::Way;
 use super::statement::PREFIX;
 use super::test::Test;
-use crate::response::{Response, is_for_caller};
+use crate::response::Response;
 use crate::tree::StatementKind;
 use obverse_bytecode::{Continuation, Mark};
 use obverse_isa::{ErrorId, FunctionId, GlobalId, Instr, LocalId, Type};
@@ -27,15 +27,7 @@ pub(super) struct Site {
 impl Lower<'_> {
     /// The errors that are responded to after a statement.
     pub(super) fn due(&self, kind: &StatementKind) -> Vec<ErrorId> {
-        let is_own = |error: &ErrorId| !is_for_caller(&self.program.module.errors[error.index()]);
-        match kind {
-            StatementKind::Throw(error) => Some(*error).filter(is_own).into_iter().collect(),
-            StatementKind::Advance(guarded, _) => {
-                self.effects.left_by(*guarded).iter().copied().filter(is_own).collect()
-            }
-            StatementKind::Call(callee, _) => self.effects.left_by(*callee).to_vec(),
-            _ => Vec::new(),
-        }
+        self.effects.due(kind, &self.program.module.errors)
     }
 
     /// Before an action that may leave these errors.

@@ -54,6 +54,8 @@ pub(super) enum Scope {
     Irreversible(ReasonId),
     /// A block with a reverse of its own is left by its end alone.
     Reversed(Vec<(Mark, Way)>),
+    /// So is the branch of a fork; the local says which way leads out of the fork, if any does.
+    Branch(Option<LocalId>, Vec<(Mark, Way)>),
 }
 
 impl Lower<'_> {

@@ -1,14 +1,14 @@
-//! The ways out of what is under way: loops, functions, blocks with a reverse of their own.
+//! The ways out of what is under way: loops, functions, closed blocks.
 //!
-//! Such a block has one end, and its records are dropped there. What leaves it says so in a local,
-//! goes to that end, and goes on behind it; what the outside is told, it is told there, so that
-//! the block skipped in reverse leaves no trace of it.
+//! A closed block, one with a reverse of its own or a branch of a fork, has one end. What leaves it
+//! says so in a local, goes to that end, and goes on behind it (behind the fork); what the outside
+//! is told, it is told there, so that the block skipped in reverse leaves no trace of it.
 
 use super::Lower;
 use super::frame::Scope;
 use super::statement::PREFIX;
 use crate::response::Response;
-use crate::tree::{Block, StatementKind};
+use crate::tree::{Block, Statement, StatementKind};
 use obverse_bytecode::Mark;
 use obverse_isa::{Instr, LocalId, ReasonId, Setting, Type};
 
@@ -50,19 +50,19 @@ impl Lower<'_> {
         }
     }
 
-    /// Go where a way leads: as far as the innermost block with a reverse of its own, which goes
-    /// on behind its end.
+    /// Go where a way leads: as far as the innermost closed block, which goes on behind its end.
     pub(super) fn leave(&mut self, way: Way) {
-        let block = self.reversed_around();
+        let block = self.block_around();
         self.step_out(block.map_or(0, |index| index + 1));
-        if block.is_some() {
-            let local = self.way_local();
+        if let Some(scope) = block.and_then(|index| self.frame.scopes.get(index)) {
+            let of_branch = if let Scope::Branch(local, _) = scope { *local } else { None };
+            let local = of_branch.unwrap_or_else(|| self.way_local());
             self.push(Instr::PushInt { value: way as i32 });
             self.push(Instr::StoreLocal { prefix: PREFIX, local });
         }
         let mark = self.jump();
         match block.and_then(|index| self.frame.scopes.get_mut(index)) {
-            Some(Scope::Reversed(ways)) => ways.push((mark, way)),
+            Some(Scope::Reversed(ways) | Scope::Branch(_, ways)) => ways.push((mark, way)),
             _ if way == Way::Again => self.frame.restarts.push(mark),
             _ => self.frame.exits.push(mark),
         }
@@ -71,7 +71,7 @@ impl Lower<'_> {
     /// Leave all sequences under way with an error pending, and begin the program again if that is
     /// the way.
     pub(super) fn give_up(&mut self, way: Way) {
-        if self.reversed_around().is_some() {
+        if self.block_around().is_some() {
             // A recovery that has given up may have set it.
             if let Some(leaving) = self.globals.leaving {
                 self.set_flag(leaving, false);
@@ -96,7 +96,7 @@ impl Lower<'_> {
             return self.frame.exits.push(mark);
         }
         let stay = self.code.jump(|target| Instr::JumpUnless { prefix: PREFIX, target });
-        if self.reversed_around().is_some() {
+        if self.block_around().is_some() {
             self.take_back_restart();
             self.give_up(Way::Out);
         } else {
@@ -105,7 +105,7 @@ impl Lower<'_> {
         self.join_one(stay);
     }
 
-    /// In a block with a reverse of its own: if the program begins again, that is said behind it.
+    /// In a closed block: if the program begins again, that is said behind it.
     fn take_back_restart(&mut self) {
         let Some(restart) = self.globals.restart else { return };
         self.push(Instr::PushGlobal { global: restart });
@@ -115,23 +115,32 @@ impl Lower<'_> {
         self.join_one(plain);
     }
 
-    /// The beginning of a block with a reverse of its own: nothing leads out of it yet.
-    pub(super) fn begin_ways(&mut self, block: &Block) {
-        let mut may_leave = false;
-        block.each_statement(&mut |statement| {
-            let due = self.due(&statement.kind);
-            may_leave |= due.iter().any(|error| self.effects.response(*error) != Response::Ignore);
-            may_leave |= matches!(&statement.kind,
-                StatementKind::Call(callee, _) if self.effects.leaves(*callee));
-        });
-        if may_leave {
+    /// The beginning of closed blocks: nothing leads out of them yet. The local that says what
+    /// does, if something may.
+    pub(super) fn begin_ways(&mut self, blocks: &[Block]) -> Option<LocalId> {
+        blocks.iter().any(|block| self.may_be_left(block)).then(|| {
             let local = self.way_local();
             self.push(Instr::PushInt { value: 0 });
             self.push(Instr::StoreLocal { prefix: PREFIX, local });
-        }
+            local
+        })
     }
 
-    /// Behind the end of such a block: go on with what has led there.
+    /// Whether something may lead out of a closed block.
+    pub(super) fn may_be_left(&self, block: &Block) -> bool {
+        let mut may_leave = false;
+        block.each_statement(&mut |statement| may_leave |= self.may_leave(statement));
+        may_leave
+    }
+
+    fn may_leave(&self, statement: &Statement) -> bool {
+        let due = self.due(&statement.kind);
+        let is_left = matches!(&statement.kind,
+            StatementKind::Call(callee, _) if self.effects.leaves(*callee));
+        is_left || due.iter().any(|error| self.effects.response(*error) != Response::Ignore)
+    }
+
+    /// Behind the end of such a block, or of such a fork: go on with what has led there.
     pub(super) fn go_on(&mut self, ways: &[Way]) {
         for way in Way::ALL {
             if !ways.contains(&way) {
@@ -153,18 +162,18 @@ impl Lower<'_> {
         }
     }
 
-    /// Whether some jump so far leads to the end of the innermost block with a reverse of its own,
-    /// or of the function.
+    /// Whether some jump so far leads to the end of the innermost closed block, or of the function.
     pub(super) fn has_way_out(&self) -> bool {
-        match self.reversed_around().and_then(|index| self.frame.scopes.get(index)) {
-            Some(Scope::Reversed(ways)) => !ways.is_empty(),
+        match self.block_around().and_then(|index| self.frame.scopes.get(index)) {
+            Some(Scope::Reversed(ways) | Scope::Branch(_, ways)) => !ways.is_empty(),
             _ => !self.frame.exits.is_empty(),
         }
     }
 
-    /// The innermost block with a reverse of its own.
-    fn reversed_around(&self) -> Option<usize> {
-        self.frame.scopes.iter().rposition(|scope| matches!(scope, Scope::Reversed(_)))
+    /// The innermost closed block.
+    fn block_around(&self) -> Option<usize> {
+        let is_closed = |scope: &Scope| matches!(scope, Scope::Reversed(_) | Scope::Branch(..));
+        self.frame.scopes.iter().rposition(is_closed)
     }
 
     /// Put right what the scopes from this one inwards have changed, the innermost first.
@@ -194,6 +203,6 @@ fn step(scope: &Scope) -> Option<Step> {
     match scope {
         Scope::Setting(setting, former) => Some(Step::Restore(*setting, *former)),
         Scope::Irreversible(reason) => Some(Step::Irreversible(*reason)),
-        Scope::Reversed(_) => None,
+        Scope::Reversed(_) | Scope::Branch(..) => None,
     }
 }

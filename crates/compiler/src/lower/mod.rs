@@ -6,6 +6,7 @@
 mod errors;
 mod expression;
 mod flow;
+mod fork;
 mod frame;
 mod function;
 mod guarded;

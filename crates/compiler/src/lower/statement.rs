@@ -22,9 +22,9 @@ impl Lower<'_> {
 
     fn statement(&mut self, statement: &Statement) {
         use StatementKind::{
-            Advance, Barrier, Break, Call, Checkpoint, For, If, Io, Irreversible, Kept, Loop, Move,
-            Output, Remember, Return, Reversed, Set, SetFor, Store, Throw, Update, Wait, WaitInput,
-            While,
+            Advance, Barrier, Break, Call, Checkpoint, For, Fork, If, Io, Irreversible, Kept, Loop,
+            Move, Output, Remember, Return, Reversed, Set, SetFor, Store, Throw, Update, Wait,
+            WaitInput, While,
         };
         if matches!(statement.kind, Advance(..) | Call(..) | Throw(_)) {
             return self.fallible(statement);
@@ -43,6 +43,7 @@ impl Lower<'_> {
             Update { place, subtracts, value } => self.update(*place, *subtracts, value),
             Remember(slot) => self.push(Instr::Remember { slot: *slot }),
             If { .. } | While { .. } | For { .. } | Loop(_) => self.control(statement),
+            Fork(branches) => self.fork(branches),
             Break => self.leave_loop(),
             Return => self.leave(Way::Out),
             Set(value) => self.set(value),
@@ -196,7 +197,7 @@ impl Lower<'_> {
     }
 
     /// A block with something to put right when it is left on the way.
-    fn scoped(&mut self, scope: Scope, block: &Block) -> Option<Scope> {
+    pub(super) fn scoped(&mut self, scope: Scope, block: &Block) -> Option<Scope> {
         self.frame.scopes.push(scope);
         self.block(block);
         self.frame.scopes.pop()
@@ -205,7 +206,7 @@ impl Lower<'_> {
     /// A block with a reverse of its own: all ways out of it lead over its end.
     pub(super) fn reversed(&mut self, block: &Block, replacement: Option<FunctionId>) {
         let from = Label(self.code.push(Instr::BlockBegin {}));
-        self.begin_ways(block);
+        self.begin_ways(std::slice::from_ref(block));
         let scope = self.scoped(Scope::Reversed(Vec::new()), block);
         let Some(Scope::Reversed(ways)) = scope else { return };
         let (marks, ways): (Vec<Mark>, Vec<Way>) = ways.into_iter().unzip();

@@ -109,13 +109,36 @@ impl Writer {
         (self.in_loop, self.in_block) = (in_loop, in_block);
     }
 
+    /// A branch that may do anything, beside one with an output and an error of its own.
+    fn fork(&mut self, depth: usize) {
+        self.names += 1;
+        let output = 10 + self.names;
+        let other = format!("{{ toggle {output} wait 1 s if input {output} {{ throw prog }} }}");
+        let is_first = self.random.next(2) == 0;
+        self.write("fork");
+        if is_first {
+            self.write(&other);
+            self.write("and");
+        }
+        let (in_loop, in_block) = (self.in_loop, self.in_block);
+        (self.in_loop, self.in_block) = (false, true);
+        self.write("{ wait 1 s speed slow");
+        self.block(depth);
+        self.write("}");
+        (self.in_loop, self.in_block) = (in_loop, in_block);
+        if !is_first {
+            self.write("and");
+            self.write(&other);
+        }
+    }
+
     fn write(&mut self, text: &str) {
         self.text.push_str(text);
         self.text.push('\n');
     }
 
     fn statement(&mut self, depth: usize) {
-        match self.random.next(if depth == 0 { 11 } else { 24 }) {
+        match self.random.next(if depth == 0 { 11 } else { 26 }) {
             0 => self.motion(),
             1 => {
                 let text = self.random.pick(&["io open", "advance go", "advance push", "wait 1 s"]);
@@ -186,6 +209,7 @@ impl Writer {
             23 => {
                 self.write("keep in reverse { n += 1 move to b io open speed fast }");
             }
+            24 | 25 => self.fork(depth - 1),
             _ => {
                 self.write("wait until input 3 high for up to 2 s else");
                 self.block(depth - 1);

@@ -8,6 +8,7 @@ mod diagnostics;
 mod errors;
 mod expressions;
 mod flow;
+mod forks;
 mod generated;
 mod guarded;
 mod imports;

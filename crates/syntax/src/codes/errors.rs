@@ -401,7 +401,7 @@ macro_rules! errors {
              reads nothing of yours. A path begins at the folder of the file that it is written \
              in and has `/` between folders on every system; `..` may lead up, but not out of the \
              program's folder. Nor may a link of the file system."
-        wrong "import \"../poses.obv\"\n\
+        wrong "import \"/cell/poses.obv\"\n\
                sequence main { wait 1 s }"
         right "sequence main { wait 1 s }"
     ImportCycle "E0503" "files that import one another"
@@ -416,6 +416,33 @@ macro_rules! errors {
              its files have at most 256 MiB together."
         wrong ""
         right ""
+
+    // E06xx: forks.
+    ForkBranches "E0601" "a fork that has not two to sixteen branches with something in each"
+        why "`fork { .. } and { .. }` runs its branches in turns until all are done. One branch \
+             alone, or an empty one, has nobody to take turns with."
+        wrong "sequence main { fork { set 1 high wait 1 s } }"
+        right "sequence main { fork { set 1 high wait 1 s } and { set 2 high wait 2 s } }"
+    LeavesFork "E0602" "a way out of a fork from one of its branches"
+        why "A fork is done when all its branches are. `break` leaves a loop within its branch, \
+             and `return` a sequence that the branch calls, but not the branch: the others would \
+             stand half-way. Only an error leaves a fork, since then the others are held."
+        wrong "sequence main { fork { toggle 1 return } and { toggle 2 } }"
+        right "sequence main { fork { toggle 1 } and { toggle 2 } return }"
+    SharedDevice "E0603" "two branches of a fork that use the same device"
+        why "Branches run in turns, one command at a time, so that two that command the same \
+             device would be mixed. The arm is one device, with its speed, its tool and its \
+             readings `force`, `distance` and `holding`; so is each output, and so are the random \
+             numbers. What a branch calls counts as its own, and so do the recoveries of its \
+             errors and what is run in its place in reverse."
+        wrong "sequence main { fork { set 1 high } and { wait 1 s set 1 low } }"
+        right "sequence main { fork { set 1 high } and { wait 1 s set 2 low } }"
+    SharedVariable "E0604" "two branches of a fork that assign the same variable"
+        why "Which of them comes last depends on whose turn it is when. Give each branch a \
+             variable of its own, and put them together after the fork."
+        wrong "sequence main { var n = 0 fork { n = 1 } and { n = 2 } if n > 0 { wait 1 s } }"
+        right "sequence main { var a = 0 var b = 0 fork { a = 1 } and { b = 2 } \
+               if a + b > 0 { wait 1 s } }"
     $($more)*
     }};
 }

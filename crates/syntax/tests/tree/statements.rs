@@ -124,6 +124,9 @@ fn outline(statement: &Statement<'_>) -> String {
             format!("for:{}:{}:{}{}", name.value, show(first), show(last), block(body))
         }
         StatementKind::Loop(body) => format!("loop{}", block(body)),
+        StatementKind::Fork(branches) => {
+            format!("fork{}", branches.iter().map(block).collect::<String>())
+        }
         StatementKind::Break => "break".to_owned(),
         StatementKind::Return => "return".to_owned(),
         StatementKind::Speed { block, .. } => format!("speed{}", optional(block)),
@@ -181,6 +184,8 @@ fn statements_are_told_apart() {
         ("repeat 3 times { break }", "repeat:3{break}"),
         ("for i from 0 to n - 1 { break }", "for:i:0:(n Subtract 1){break}"),
         ("loop { break return }", "loop{break return}"),
+        ("fork { break }", "fork{break}"),
+        ("fork { break } and { return } and { }", "fork{break}{return}{}"),
         ("tool gripper tool gripper { break }", "tool:gripper tool:gripper{break}"),
         ("checkpoint here", "checkpoint:here"),
         ("barrier \"why\"", "barrier:why"),

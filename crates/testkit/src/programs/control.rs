@@ -27,7 +27,8 @@ impl Generator<'_, '_> {
         if self.frame.nesting >= MAX_NESTING {
             return self.motion();
         }
-        match self.below(15)? {
+        match self.below(if self.has_forks { 18 } else { 15 })? {
+            15..=17 => self.fork(),
             0..=2 => self.branch(),
             3 => self.chain(),
             4 => self.asserted_branch(),
@@ -248,6 +249,9 @@ impl Generator<'_, '_> {
 
     /// A setting for a block.
     fn scoped(&mut self) -> Result<()> {
+        if !self.has_arm() {
+            return self.output();
+        }
         let setting = match self.one_in(2)? {
             true => self.setting_in_reverse()?,
             false => self.setting()?,
@@ -275,7 +279,8 @@ impl Generator<'_, '_> {
 
     /// `if … { … throw e }`
     fn throw(&mut self) -> Result<()> {
-        if self.errors.is_empty() || self.frame.is_replacement {
+        let may_raise = !self.frame.is_replacement && self.frame.claim.is_none();
+        if self.errors.is_empty() || !may_raise {
             return self.branch();
         }
         let condition = self.expression(Type::Bool)?;

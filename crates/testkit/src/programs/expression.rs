@@ -118,7 +118,7 @@ impl Generator<'_, '_> {
 
     /// Whether to risk a trap, which is not often.
     pub(super) fn traps(&mut self) -> Result<bool> {
-        Ok(self.options.allow_traps && self.one_in(24)?)
+        Ok(self.options.allow_traps && self.frame.claim.is_none() && self.one_in(24)?)
     }
 
     fn real_literal(&mut self, of_type: Type) -> Result<String> {
@@ -184,8 +184,9 @@ impl Generator<'_, '_> {
         let literal = self.real_literal(of_type)?;
         if self.frame.may_read && self.one_in(4)? {
             return match (of_type, self.below(3)?) {
-                (Type::Force, 0) => Ok("force".to_owned()),
-                (Type::Length, 0) => Ok("distance".to_owned()),
+                (Type::Force, 0) if self.has_arm() => Ok("force".to_owned()),
+                (Type::Length, 0) if self.has_arm() => Ok("distance".to_owned()),
+                _ if !self.has_dice() => self.variable_or(of_type, literal),
                 (Type::Number, 0) => Ok(format!("random(0, {})", self.below(9)? + 1)),
                 (_, 1) => {
                     let high = self.real_literal(of_type)?;
@@ -228,7 +229,7 @@ impl Generator<'_, '_> {
     fn boolean_leaf(&mut self) -> Result<String> {
         if self.frame.may_read && self.one_in(3)? {
             return Ok(match self.below(3)? {
-                0 => "holding".to_owned(),
+                0 if self.has_arm() => "holding".to_owned(),
                 _ => format!("input {}", self.signal(&self.inputs.clone())?),
             });
         }

@@ -8,6 +8,7 @@
 mod control;
 mod declaration;
 mod expression;
+mod fork;
 mod motion;
 mod scope;
 mod statement;
@@ -29,6 +30,9 @@ pub struct Options {
     pub allow_errors: bool,
     /// What may trap: divisions by something that may be zero, assertions that may be wrong.
     pub allow_traps: bool,
+    /// Forks; their branches never raise an error nor trap, so that they could as well run one
+    /// after the other.
+    pub allow_forks: bool,
     /// How many statements the text may have.
     pub max_statements: usize,
 }
@@ -40,6 +44,7 @@ impl Default for Options {
             allow_overrides: true,
             allow_errors: true,
             allow_traps: true,
+            allow_forks: true,
             max_statements: 80,
         }
     }
@@ -97,6 +102,10 @@ struct Generator<'g, 'u> {
     /// The advanced moves that throw nothing.
     calm_moves: Vec<String>,
     callees: Vec<Callee>,
+    /// Whether this program has forks.
+    has_forks: bool,
+    /// The sequences that a branch alone calls.
+    of_branches: Vec<String>,
     frame: Frame,
 }
 
@@ -119,15 +128,19 @@ impl<'g, 'u> Generator<'g, 'u> {
             moves: Vec::new(),
             calm_moves: Vec::new(),
             callees: Vec::new(),
+            has_forks: false,
+            of_branches: Vec::new(),
             frame: Frame::default(),
         }
     }
 
     fn program(&mut self) -> Result<Vec<String>> {
         let mut items = self.data()?;
+        self.has_forks = self.options.allow_forks && self.one_in(4)?;
         items.extend(self.sequences()?);
         items.push(self.main()?);
         items.extend(self.error_declarations()?);
+        items.append(&mut self.of_branches);
         // Declarations see each other in any order.
         let turn = self.below(items.len())?;
         items.rotate_left(turn);

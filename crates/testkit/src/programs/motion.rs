@@ -10,6 +10,9 @@ const SPEEDS: [&str; 5] = ["slow", "very slow", "normal", "fast", "very fast"];
 impl Generator<'_, '_> {
     /// `move …`
     pub(super) fn motion(&mut self) -> Result<()> {
+        if !self.has_arm() {
+            return self.output();
+        }
         let (target, is_named) = self.target()?;
         let linearly = self.choose(&["", " linearly"])?;
         let is_always = is_named && self.frame.knows_position && self.one_in(2)?;
@@ -62,6 +65,9 @@ impl Generator<'_, '_> {
 
     /// `position p`
     pub(super) fn remember(&mut self) -> Result<()> {
+        if !self.has_arm() {
+            return self.output();
+        }
         let positions = self.frame.positions.clone();
         let free = &positions[self.frame.kept_positions.min(positions.len())..];
         let name = match free.is_empty() || self.one_in(2)? {
@@ -85,7 +91,7 @@ impl Generator<'_, '_> {
 
     /// `set 0 high`, `toggle 3`, perhaps with its settling time.
     pub(super) fn output(&mut self) -> Result<()> {
-        let bit = self.signal(&self.outputs.clone())?;
+        let bit = self.any_output()?;
         match self.below(3)? {
             0 => self.line(&format!("toggle {bit}")),
             1 => self.line(&format!("set {bit} low")),
@@ -103,7 +109,9 @@ impl Generator<'_, '_> {
         let names = self.readable(Type::Time);
         Ok(match self.below(4)? {
             0 if !names.is_empty() => format!("abs({})", self.choose(&names)?),
-            1 if self.frame.may_read => format!("random(1 ms, {} ms)", self.below(20)? + 1),
+            1 if self.frame.may_read && self.has_dice() => {
+                format!("random(1 ms, {} ms)", self.below(20)? + 1)
+            }
             2 => format!("0.{} s", self.below(100)?),
             _ => format!("{} ms", self.below(50)?),
         })

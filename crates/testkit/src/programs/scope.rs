@@ -1,6 +1,7 @@
 //! What can be seen from a place in a program: variables with their types.
 
 use super::Generator;
+use super::fork::Claim;
 
 /// The types of variables and parameters.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -73,8 +74,10 @@ pub(super) struct Frame {
     pub(super) nesting: usize,
     /// Whether there is a loop around that `break` may leave.
     pub(super) in_loop: bool,
-    /// Whether there is a block with a reverse of its own around.
+    /// Whether there is a block with a reverse of its own around, or a branch.
     pub(super) in_reversed: bool,
+    /// What the branch of a fork around has for itself.
+    pub(super) claim: Option<Claim>,
     /// Whether this is a block that is run in reverse.
     pub(super) is_replacement: bool,
     /// Whether it is known which position the program named last.
@@ -103,6 +106,7 @@ impl Frame {
             in_reversed: true,
             is_replacement: true,
             nesting: self.nesting,
+            claim: self.claim.clone(),
             ..Self::new()
         }
     }

@@ -91,7 +91,8 @@ impl Generator<'_, '_> {
     }
 
     fn io(&mut self) -> Result<()> {
-        if self.io.is_empty() || self.frame.cost + self.frame.times * 6 > MAX_COST {
+        let has_all = self.frame.claim.is_none();
+        if self.io.is_empty() || !has_all || self.frame.cost + self.frame.times * 6 > MAX_COST {
             return self.output();
         }
         self.frame.cost += self.frame.times * 6;
@@ -123,6 +124,9 @@ impl Generator<'_, '_> {
 
     /// A setting to the end of the sequence.
     fn modal(&mut self) -> Result<()> {
+        if !self.has_arm() {
+            return self.output();
+        }
         let setting = self.setting()?;
         self.line(&setting);
         Ok(())
@@ -130,6 +134,9 @@ impl Generator<'_, '_> {
 
     /// `call f(…)`
     fn call(&mut self) -> Result<()> {
+        if self.frame.claim.is_some() {
+            return self.call_of_branch();
+        }
         let affordable: Vec<Callee> =
             self.callees.iter().filter(|f| self.may_call(f)).cloned().collect();
         if affordable.is_empty() {
@@ -167,7 +174,9 @@ impl Generator<'_, '_> {
 
     fn advance(&mut self) -> Result<()> {
         let may_fail = self.options.allow_errors && self.frame.is_replacement;
-        if self.moves.is_empty() || may_fail {
+        // Some follow failure with an error.
+        let in_branch = self.frame.claim.is_some();
+        if self.moves.is_empty() || may_fail || in_branch {
             return self.motion();
         }
         let name = self.choose(&self.moves.clone())?;
@@ -190,6 +199,6 @@ impl Generator<'_, '_> {
 
     /// Whether what cannot be taken back may stand here.
     pub(super) fn may_be_irreversible(&self) -> bool {
-        self.options.allow_never && !self.frame.in_reversed
+        self.options.allow_never && !self.frame.in_reversed && self.frame.claim.is_none()
     }
 }

@@ -43,6 +43,7 @@ pub fn pair(u: &mut Unstructured<'_>, word: Word) -> Result<Pair> {
         allow_overrides: word != Word::With,
         allow_errors: false,
         allow_traps: false,
+        allow_forks: false,
         max_statements: 60,
     };
     Generator::new(u, options).pair(word)

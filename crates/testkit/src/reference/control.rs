@@ -82,6 +82,7 @@ impl<'p> Interpreter<'p, '_> {
                 self.counted(Some(name.value), first.int(), last.int(), body)
             }
             StatementKind::Loop(body) => self.endless(body),
+            StatementKind::Fork(branches) => self.one_after_another(branches),
             StatementKind::Break => Ok(Flow::Break),
             StatementKind::Return => Ok(Flow::Return),
             StatementKind::WaitUntil { input, high, timeout, otherwise } => {
@@ -206,6 +207,17 @@ impl<'p> Interpreter<'p, '_> {
                 Flow::Next => {}
                 Flow::Break => break,
                 flow => return Ok(flow),
+            }
+        }
+        Ok(Flow::Next)
+    }
+
+    /// Branches are independent of one another, so that their order is open.
+    fn one_after_another(&mut self, branches: &'p [Block<'p>]) -> Run<Flow> {
+        for branch in branches {
+            let flow = self.block(branch)?;
+            if flow != Flow::Next {
+                return Ok(flow);
             }
         }
         Ok(Flow::Next)

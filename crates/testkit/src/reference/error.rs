@@ -259,6 +259,7 @@ fn blocks_of<'p>(statement: &'p Statement<'p>) -> Vec<&'p Block<'p>> {
         StatementKind::Speed { block, .. } | StatementKind::Tool { block, .. } => {
             block.iter().collect()
         }
+        StatementKind::Fork(branches) => branches.iter().collect(),
         StatementKind::Irreversible { block, .. }
         | StatementKind::WithInReverse { block, .. }
         | StatementKind::KeepInReverse(block)
