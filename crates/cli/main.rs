@@ -27,7 +27,8 @@ const EXIT_CODES: &str = "\
 Exit codes:
   0  done; for `run`, the program ended with no error pending; for `back`, the run went back
      as far as the program lets it
-  1  the run ended otherwise: an error pending, a fault of the workcell, a trap, the limit
+  1  the run ended otherwise: an error pending, a fault of the workcell, a trap, the limit;
+     for `fmt --check`, a file would change
   2  the input is wrong (command line, source, module, tape, workcell file), and nothing was run;
      or the output cannot be written. With `--json` the last line on standard output is then
      a summary with the outcome `refused`, and the messages";
@@ -36,6 +37,8 @@ Exit codes:
 enum Command {
     /// Check a program and say what is wrong with it.
     Check(commands::check::Arguments),
+    /// Bring source files into their canonical layout.
+    Fmt(commands::fmt::Arguments),
     /// Compile a program to a module.
     Build(commands::build::Arguments),
     /// Run a program on the simulated workcell and tell what happens.
@@ -56,6 +59,7 @@ impl Command {
     /// Whether machines are told, who then learn what is wrong with the input, too.
     fn is_json(&self) -> bool {
         match self {
+            Self::Fmt(arguments) => arguments.json,
             Self::Build(arguments) => arguments.json,
             Self::Run(arguments) | Self::Back(arguments) => arguments.json,
             Self::Dis(arguments) => arguments.json,
@@ -81,6 +85,7 @@ fn main() -> ExitCode {
     let is_json = arguments.command.is_json();
     let outcome = match arguments.command {
         Command::Check(arguments) => commands::check::run(&arguments),
+        Command::Fmt(arguments) => commands::fmt::run(&arguments),
         Command::Build(arguments) => commands::build::run(&arguments),
         Command::Run(arguments) => commands::run::run(&arguments),
         Command::Back(arguments) => commands::back::run(&arguments),

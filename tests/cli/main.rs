@@ -2,6 +2,7 @@
 //! it says to wrong input.
 
 mod commands;
+mod fmt;
 mod support;
 mod wrong_files;
 mod wrong_input;

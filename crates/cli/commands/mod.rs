@@ -5,6 +5,7 @@ pub(crate) mod build;
 pub(crate) mod check;
 pub(crate) mod dis;
 pub(crate) mod explain;
+pub(crate) mod fmt;
 pub(crate) mod isa;
 pub(crate) mod run;
 pub(crate) mod tape;

@@ -8,6 +8,7 @@ pub mod codes;
 pub mod diagnostic;
 mod expectation;
 mod foreign;
+pub mod format;
 mod lexer;
 mod nearest;
 mod nesting;

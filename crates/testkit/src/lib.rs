@@ -5,6 +5,7 @@
 
 pub mod altered;
 pub mod code;
+pub mod format_laws;
 pub mod hostile;
 pub mod laws;
 pub mod ledger;
