@@ -1,7 +1,8 @@
 //! The laws of the machine over generated modules: there and back, runs are steps, parsimony, write
 //! ahead, barrier, blocks, turns, round trips; those of the formatter; and those of compiler and
-//! machine together over generated programs, against the reference interpreter. `LAW_RUNS` sets how many programs each
-//! law sees; a failure prints the number of the program, and `LAW_SEED` runs that one alone.
+//! machine together over generated programs, against the reference interpreter. `LAW_RUNS` sets how
+//! many programs each law sees; a failure prints the number of the program, and `LAW_SEED` runs that
+//! one alone.
 
 use arbitrary::{Result, Unstructured};
 use obverse_testkit::{format_laws, laws, machine_laws};

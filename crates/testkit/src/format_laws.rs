@@ -14,8 +14,9 @@ use obverse_syntax::parse;
 /// # Errors
 /// Those of the randomness.
 pub fn formats(u: &mut Unstructured<'_>) -> Result<bool> {
+    let noise = noise(u.arbitrary()?);
     let source = programs::generate(u, Options::default())?;
-    let untidy = untidy(u, &source)?;
+    let untidy = untidy(&mut Unstructured::new(&noise), &source)?;
     let expected = meaning(&source);
     assert!(meaning(&untidy) == expected, "the untidy text means something else\n{untidy}");
     let text = format(&untidy).unwrap_or_else(|found| panic!("{found:?}\n{untidy}"));
@@ -33,9 +34,11 @@ pub fn formats(u: &mut Unstructured<'_>) -> Result<bool> {
 /// # Errors
 /// Those of the randomness.
 pub fn cut_off(u: &mut Unstructured<'_>) -> Result<bool> {
+    let noise = noise(u.arbitrary()?);
+    let end: usize = u.arbitrary()?;
     let source = programs::generate(u, Options::default())?;
-    let text = untidy(u, &source)?;
-    let mut end = u.int_in_range(0..=text.len())?;
+    let text = untidy(&mut Unstructured::new(&noise), &source)?;
+    let mut end = end % (text.len() + 1);
     while !text.is_char_boundary(end) {
         end -= 1;
     }
@@ -54,6 +57,17 @@ pub fn meaning(source: &str) -> Module {
         Some(module) => Module { sources: Vec::new(), source_map: Vec::new(), ..module },
         None => panic!("it does not compile: {:#?}\n{source}", compiled.diagnostics),
     }
+}
+
+/// Randomness of its own for what is between tokens: a program may have used up all of the other.
+fn noise(seed: u64) -> Vec<u8> {
+    let mut state = seed;
+    let mut next = || {
+        state =
+            state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        (state >> 56) as u8
+    };
+    (0..1 << 16).map(|_| next()).collect()
 }
 
 /// What may stand in place of the end of a line.
@@ -75,7 +89,8 @@ fn untidy(u: &mut Unstructured<'_>, source: &str) -> Result<String> {
             ' ' if is_of_number => text.push_str(u.choose(&[" ", "  ", "\t"])?),
             ' ' => between(u, &mut text, &[" "], &mut count)?,
             '\n' => {
-                between(u, &mut text, &["\n", "\n", "\r\n", "\r", ";", " ; \n", " "], &mut count)?
+                between(u, &mut text, &[""], &mut count)?;
+                between(u, &mut text, &LINE_ENDS, &mut count)?;
             }
             '(' | ')' | ',' | '{' | '}' | '[' => {
                 between(u, &mut text, &[""], &mut count)?;

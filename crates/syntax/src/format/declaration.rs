@@ -9,8 +9,8 @@ use crate::ast::{
 use crate::span::Spanned;
 
 impl<'s> Writer<'s> {
-    /// What stands at the top of a file, each on lines of its own. Without a source, what is long or of another kind than the
-    /// one before stands apart from it.
+    /// What stands at the top of a file, each on lines of its own. Without a source, what is long
+    /// or of another kind than the one before stands apart from it.
     pub(super) fn items(&mut self, items: &[Item<'s>]) -> Vec<Member<'s>> {
         let mut members = self.members(items, Self::item);
         members.iter_mut().for_each(|member| member.is_in_row = false);
