@@ -2,9 +2,9 @@
 //!
 //! One writer walks the tree and says of which pieces it consists ([`writer`], and beside it what
 //! is written of declarations, statements and expressions); one layout makes lines of the pieces
-//! ([`layout`], [`line`](mod@line)). With a source text the pieces are its tokens, with the comments
-//! between them ([`cursor`]); without one, those that the tree asks for. What a program means is not
-//! known here.
+//! ([`layout`], `line`). With a source text the pieces are its tokens, with the comments between
+//! them ([`cursor`]); without one, those that the tree asks for. What a program means is not known
+//! here.
 //!
 //! Blocks stay on one line if they were written on one and fit; rows of statements with `;` between
 //! as well. Blank lines stay, one where there were several. Lines end with LF, whatever they ended
