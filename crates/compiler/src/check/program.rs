@@ -291,7 +291,7 @@ impl<'s> Checker<'s> {
                 Meaning::Sequence(_) | Meaning::Action(_) => (symbol.meaning.kind(), "called"),
                 Meaning::Error(_) => ("an error", "thrown"),
                 Meaning::Global(..) | Meaning::Local(..) => ("a variable", "read"),
-                Meaning::Item(_) | Meaning::Counter(_) => continue,
+                Meaning::Item(_) | Meaning::Counter(_) | Meaning::CountDown(_) => continue,
                 _ => (symbol.meaning.kind(), "used"),
             };
             let message = format!("`{name}` is {kind} that is never {use_}");

@@ -81,10 +81,13 @@ impl<'s> Writer<'s> {
                 self.word("times");
                 self.block(body);
             }
-            StatementKind::For { name, first, last, body } => {
+            StatementKind::For { name, first, down, last, body } => {
                 self.named("for", name.value);
                 self.word("from");
                 self.expression(first);
+                if *down {
+                    self.word("down");
+                }
                 self.word("to");
                 self.expression(last);
                 self.block(body);
