@@ -6,6 +6,7 @@ pub(crate) mod check;
 pub(crate) mod dis;
 pub(crate) mod explain;
 pub(crate) mod fmt;
+pub(crate) mod invert;
 pub(crate) mod isa;
 pub(crate) mod run;
 pub(crate) mod tape;

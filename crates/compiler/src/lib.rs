@@ -2,11 +2,12 @@
 //!
 //! [`compile`] is the way in. Read `types` and `units`, then `check` (syntax tree to checked tree),
 //! `effects` (errors and barriers across calls), `lower` (checked tree to code). Knows nothing of
-//! machines and robots; the parser is `obverse-syntax`.
+//! machines and robots; [`invert`] makes of a sequence its inverse; the parser is `obverse-syntax`.
 
 mod check;
 mod effects;
 mod fold;
+mod invert;
 mod keyframes;
 mod lower;
 mod recursion;
@@ -21,6 +22,8 @@ use effects::Effects;
 use obverse_bytecode::Module;
 use obverse_syntax::diagnostic::{Diagnostic, Severity};
 use report::Reports;
+
+pub use invert::{NoInverse, invert};
 
 /// What became of a source text.
 #[derive(Clone, Debug)]

@@ -2,8 +2,8 @@
 //!
 //! A code is stable: a row may be reworded, but its code is never given another meaning nor used
 //! again. `E00xx` is text and grammar, `E01xx` names, `E02xx` types and units, `E03xx` statements,
-//! structure and errors, `E04xx` reversal, `W0xxx` warnings. It knows nothing of how a mistake is
-//! found or shown.
+//! structure and errors, `E04xx` reversal, `E05xx` inversion, `W0xxx` warnings. It knows nothing of
+//! how a mistake is found or shown.
 
 macro_rules! codes {
     ($($name:ident $code:literal $title:literal
@@ -454,6 +454,24 @@ codes! {
              one."
         wrong "sequence main { skip in reverse { barrier \"glued\" } }"
         right "sequence main { skip in reverse { wait 1 s } barrier \"glued\" }"
+
+    // E05xx: inversion. The examples are inverted: their sequence `main`.
+    NotInvertible "E0501" "something that has no inverse"
+        why "The inverse of a sequence is a program of its own, which knows nothing of the run that \
+             it takes back: it has no tape. So each statement must say by itself, or together with \
+             those before it, what takes it back. A move goes back to the place that was named \
+             before it; an output to the level that it was set to before, or to the counterpart of \
+             its I/O operation; `x += e` is taken back by `x -= e`; a branch or a loop by its \
+             assertion (`ending when`, `entered when`) or by what it leaves alone. Readings, errors, \
+             barriers and ways out of the middle leave no such trace. A sequence begins where its \
+             first move leads, with the outputs that are set before it."
+        wrong "joints a = [0, 0, 0, 0, 0, 0] deg\n\
+               joints b = [9, 0, 0, 0, 0, 0] deg\n\
+               sequence main { move to a move 20 mm up in base move to b }"
+        right "joints a = [0, 0, 0, 0, 0, 0] deg\n\
+               joints b = [9, 0, 0, 0, 0, 0] deg\n\
+               joints above_a = [0, 9, 0, 0, 0, 0] deg\n\
+               sequence main { move to a move to above_a move to b }"
 
     // W0xxx: warnings.
     Unused "W0001" "something that is never used"

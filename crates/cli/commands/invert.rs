@@ -1,0 +1,77 @@
+//! `obverse invert`: print the inverse of a sequence as a program of its own.
+
+use super::Result;
+use crate::problem::{Diagnosed, Problem};
+use crate::{Outcome, load, report, show, write};
+use obverse_compiler::NoInverse;
+use obverse_syntax::codes::Code;
+use obverse_syntax::diagnostic::Diagnostic;
+use serde_json::{Map, json};
+use std::path::PathBuf;
+
+#[derive(clap::Args)]
+pub(crate) struct Arguments {
+    /// The program, as source text.
+    file: PathBuf,
+    /// The sequence or action.
+    sequence: String,
+    /// For machines: an object with the text, and a summary last.
+    #[arg(long)]
+    pub(crate) json: bool,
+}
+
+pub(crate) fn run(arguments: &Arguments) -> Result {
+    let path = &arguments.file;
+    let raw = load::bytes(path)?;
+    let name = path.display().to_string();
+    let wrong = |text: &str, diagnostics| Diagnosed {
+        name: name.clone(),
+        text: text.to_owned(),
+        diagnostics,
+    };
+    let text = obverse_syntax::text_of(&raw)
+        .map_err(|diagnostic| Problem::in_source(wrong("", vec![*diagnostic])))?;
+    let short = path.file_name().map_or_else(|| name.clone(), |n| n.to_string_lossy().into_owned());
+    match obverse_compiler::invert(&short, text, &arguments.sequence) {
+        Ok(inverse) => Ok(told(arguments, &short, &inverse)),
+        Err(NoInverse::UnknownSequence(meant)) => {
+            let hint = meant.map_or_else(String::new, |meant| format!("; did you mean `{meant}`?"));
+            let why = format!("there is no sequence or action `{}`{hint}", arguments.sequence);
+            Err(Problem::of_file(path, why))
+        }
+        Err(NoInverse::Diagnosed(diagnostics)) if is_refusal(&diagnostics) => {
+            Ok(refused(arguments, &wrong(text, diagnostics)))
+        }
+        Err(NoInverse::Diagnosed(diagnostics)) => Err(Problem::in_source(wrong(text, diagnostics))),
+    }
+}
+
+/// Whether the program is correct, and what has no inverse was said.
+fn is_refusal(diagnostics: &[Diagnostic]) -> bool {
+    diagnostics.iter().all(|diagnostic| diagnostic.code == Code::NotInvertible)
+}
+
+fn told(arguments: &Arguments, file: &str, inverse: &str) -> Outcome {
+    let plain = |text: &str| text.chars().filter(|c| !c.is_control()).collect::<String>();
+    let (sequence, file) = (&arguments.sequence, plain(file));
+    let text = format!("// The inverse of `{sequence}` in {file}.\n\n{inverse}");
+    if !arguments.json {
+        write::exactly(&text);
+        return Outcome::Done;
+    }
+    let object = json!({ "type": "inverse", "sequence": sequence, "text": text });
+    write::line(&object.to_string());
+    report::summary("inverted", Map::new(), Map::new());
+    Outcome::Done
+}
+
+fn refused(arguments: &Arguments, diagnosed: &Diagnosed) -> Outcome {
+    if !arguments.json {
+        show::diagnostics(diagnosed);
+        return Outcome::EndedOtherwise;
+    }
+    show::diagnostics_json(diagnosed).iter().for_each(|one| write::line(&one.to_string()));
+    let errors = Map::from_iter([("errors".to_owned(), json!(diagnosed.diagnostics.len()))]);
+    report::summary("no inverse", errors, Map::new());
+    Outcome::EndedOtherwise
+}

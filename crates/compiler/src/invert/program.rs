@@ -1,0 +1,501 @@
+//! The program around the sequence: what is inverted with it, in which order, what is known where
+//! each begins, and what the inverse needs of the rest.
+
+use super::block::Inverter;
+use super::effect::{Declared, Effect, Facts, Key, Value, constant};
+use super::refusal::refusal;
+use super::walk;
+use obverse_syntax::ast::{
+    Block, IoOperation, Item, Name, Program, Sequence, Statement, StatementKind,
+    VariableDeclaration,
+};
+use obverse_syntax::diagnostic::Diagnostic;
+use obverse_syntax::format::print;
+use obverse_syntax::span::{Span, Spanned};
+use std::collections::{BTreeSet, HashMap, HashSet};
+
+/// What the name of an inverse ends with. That of its inverse does not.
+const SUFFIX: &str = "_inverse";
+
+/// What is to be inverted, and what is known of the program.
+pub(super) struct Plan<'s> {
+    program: &'s Program<'s>,
+    pub(super) root: &'s str,
+    /// What is inverted, callees before callers.
+    order: Vec<&'s Sequence<'s>>,
+    sequences: HashMap<&'s str, &'s Sequence<'s>>,
+    io: HashMap<&'s str, &'s IoOperation<'s>>,
+    joints: HashSet<&'s str>,
+    items: HashSet<&'s str>,
+    globals: HashSet<&'s str>,
+    /// What a call changes, by sequence.
+    effects: HashMap<&'s str, Effect<'s>>,
+    /// The names of inverses, by the names of what they are the inverses of.
+    inverse_names: HashMap<&'s str, String>,
+}
+
+impl<'s> Declared<'s> for Plan<'s> {
+    fn io(&self, name: &str) -> Option<&IoOperation<'s>> {
+        self.io.get(name).copied()
+    }
+
+    fn effect_of_call(&self, name: &str) -> Effect<'s> {
+        self.effects.get(name).cloned().unwrap_or_else(Effect::open)
+    }
+
+    fn is_joints(&self, name: &str) -> bool {
+        self.joints.contains(name)
+    }
+}
+
+impl<'s> Plan<'s> {
+    /// What it takes to invert a sequence of a program.
+    pub(super) fn of(program: &'s Program<'s>, root: &str) -> Result<Self, Vec<Diagnostic>> {
+        let mut plan = Self {
+            program,
+            root: "",
+            order: Vec::new(),
+            sequences: HashMap::new(),
+            io: HashMap::new(),
+            joints: HashSet::new(),
+            items: HashSet::new(),
+            globals: HashSet::new(),
+            effects: HashMap::new(),
+            inverse_names: HashMap::new(),
+        };
+        for item in &program.items {
+            match item {
+                Item::Io(io) => _ = plan.io.insert(io.name.value, io),
+                Item::Joints(joints) => _ = plan.joints.insert(joints.name.value),
+                Item::Variable(variable) => _ = plan.globals.insert(variable.name.value),
+                Item::Sequence(one) => _ = plan.sequences.insert(one.name.value, one),
+                Item::ItemDeclaration(item) => _ = plan.items.insert(item.name.value),
+                Item::Cell(_) | Item::Error(_) | Item::AdvancedMove(_) => {}
+            }
+        }
+        plan.find_effects();
+        if let Some(root) = plan.sequences.get(root) {
+            plan.root = root.name.value;
+            plan.order = plan.after_callees(&[root], inverted_calls).map_err(|again| {
+                let message = "a sequence that calls itself has no inverse";
+                vec![
+                    refusal(again, message, "it is under way already")
+                        .with_help("write the repetition as a loop"),
+                ]
+            })?;
+        }
+        let names = plan.io.keys().chain(plan.sequences.keys());
+        plan.inverse_names = names.map(|name| (*name, inverse_name(name))).collect();
+        Ok(plan)
+    }
+
+    /// The name of the inverse of a sequence or I/O operation.
+    pub(super) fn inverse_name(&self, name: Name<'s>) -> Name<'_> {
+        let inverse = self.inverse_names.get(name.value);
+        Spanned::new(inverse.map_or(name.value, String::as_str), name.span)
+    }
+
+    /// The name of a variable of the program as it is declared.
+    fn global_name(&self, name: &str) -> &'s str {
+        self.globals.get(name).copied().unwrap_or("")
+    }
+
+    /// The name of an I/O operation as it is declared.
+    pub(super) fn io_name(&self, name: &str) -> Option<&'s str> {
+        self.io.get(name).map(|io| io.name.value)
+    }
+
+    /// Every I/O operation.
+    pub(super) fn io_operations(&self) -> impl Iterator<Item = &'s IoOperation<'s>> {
+        self.program.items.iter().filter_map(|item| match item {
+            Item::Io(io) => Some(io),
+            _ => None,
+        })
+    }
+
+    pub(super) fn is_global(&self, name: &str) -> bool {
+        self.globals.contains(name)
+    }
+
+    /// Whether a name means the same in every sequence.
+    pub(super) fn is_of_program(&self, name: &str) -> bool {
+        self.is_global(name) || self.is_constant(name)
+    }
+
+    /// Whether a name is never assigned.
+    pub(super) fn is_constant(&self, name: &str) -> bool {
+        self.is_joints(name) || self.is_item(name)
+    }
+
+    /// Whether a call of a sequence may assign a variable of the program.
+    pub(super) fn assigns(&self, name: &'s str) -> bool {
+        let (mut seen, mut to_visit) = (HashSet::new(), vec![name]);
+        while let Some(name) = to_visit.pop() {
+            let Some(sequence) = self.sequence(name).filter(|_| seen.insert(name)) else { continue };
+            let mut assigns = false;
+            walk::each_in(&sequence.body, &mut |statement| match &statement.kind {
+                StatementKind::Assign { name, .. } => assigns |= self.is_global(name.value),
+                StatementKind::Call { name, .. } => to_visit.push(name.value),
+                _ => {}
+            });
+            if assigns {
+                return true;
+            }
+        }
+        false
+    }
+
+    fn is_item(&self, name: &str) -> bool {
+        self.items.contains(name)
+    }
+
+    pub(super) fn sequence(&self, name: &str) -> Option<&'s Sequence<'s>> {
+        self.sequences.get(name).copied()
+    }
+
+    fn find_effects(&mut self) {
+        let all: Vec<&Sequence<'s>> = self.sequences.values().copied().collect();
+        let order = match self.after_callees(&all, all_calls) {
+            Ok(order) => order,
+            // Of what calls itself nothing is known; nor, for simplicity, of anything else.
+            Err(_) => return,
+        };
+        for sequence in order {
+            let effect = Effect::of_block(&sequence.body, self);
+            let effect = effect.of_variables(|name| self.globals.contains(name));
+            self.effects.insert(sequence.name.value, effect);
+        }
+    }
+
+    /// These sequences and what they call, each after what it calls.
+    ///
+    /// # Errors
+    /// A call of what is under way.
+    fn after_callees(
+        &self,
+        roots: &[&'s Sequence<'s>],
+        calls: fn(&'s Sequence<'s>) -> Vec<(&'s str, Span)>,
+    ) -> Result<Vec<&'s Sequence<'s>>, Span> {
+        let mut done = Vec::new();
+        let mut is_done: HashMap<&str, bool> = HashMap::new();
+        for &root in roots {
+            if is_done.contains_key(root.name.value) {
+                continue;
+            }
+            is_done.insert(root.name.value, false);
+            let mut under_way = vec![(root, calls(root))];
+            while let Some((sequence, left)) = under_way.last_mut() {
+                let Some((name, span)) = left.pop() else {
+                    is_done.insert(sequence.name.value, true);
+                    done.push(*sequence);
+                    under_way.pop();
+                    continue;
+                };
+                let Some(callee) = self.sequence(name) else { continue };
+                match is_done.get(name) {
+                    Some(false) => return Err(span),
+                    Some(true) => {}
+                    None => {
+                        is_done.insert(name, false);
+                        under_way.push((callee, calls(callee)));
+                    }
+                }
+            }
+        }
+        Ok(done)
+    }
+
+    /// What is known where each sequence begins: what all its callers know.
+    fn entries(&self) -> HashMap<&'s str, Facts<'s>> {
+        let mut entries: HashMap<&'s str, Facts<'s>> = HashMap::new();
+        if self.is_begun_with() {
+            entries.insert(self.root, self.first_values());
+        }
+        for sequence in self.order.iter().rev() {
+            let facts = entries.get(sequence.name.value).cloned().unwrap_or_default();
+            self.each_call(&sequence.body, facts, &mut |name, facts| {
+                let facts = facts.clone().of_program(|name| self.globals.contains(name));
+                entries.entry(name).and_modify(|known| known.meet(&facts)).or_insert(facts);
+            });
+        }
+        entries
+    }
+
+    fn each_call(
+        &self,
+        block: &'s Block<'s>,
+        mut facts: Facts<'s>,
+        visit: &mut impl FnMut(&'s str, &Facts<'s>),
+    ) {
+        for statement in &block.statements {
+            match &statement.kind {
+                StatementKind::Call { name, .. } => visit(name.value, &facts),
+                StatementKind::SkipInReverse(_) | StatementKind::ReplaceInReverse { .. } => {}
+                _ => {
+                    let mut inside = facts.clone();
+                    inside.at_head(statement, self);
+                    for block in walk::blocks(statement) {
+                        self.each_call(block, inside.clone(), visit);
+                    }
+                }
+            }
+            facts.after(statement, self);
+        }
+    }
+
+    /// Whether the program begins with the sequence: it is the main sequence, or all that this
+    /// calls.
+    fn is_begun_with(&self) -> bool {
+        let Some(main) = main_of(self.program) else { return false };
+        let calls_it = match main.body.statements.as_slice() {
+            [Statement { kind: StatementKind::Call { name, arguments }, .. }] => {
+                name.value == self.root && arguments.is_empty()
+            }
+            _ => false,
+        };
+        main.name.value == self.root || calls_it
+    }
+
+    /// The variables of the program as they begin.
+    fn first_values(&self) -> Facts<'s> {
+        let mut facts = Facts::default();
+        for item in &self.program.items {
+            if let Item::Variable(variable) = item
+                && let Some(value) = constant(&variable.value, self)
+            {
+                facts.set(Key::Variable(variable.name.value), Value::Constant(value));
+            }
+        }
+        facts
+    }
+
+    /// A variable of the program as it begins in the inverse. If the program begins with the
+    /// sequence, so does the inverse program with the inverse, and the variable with the value that
+    /// it has after the sequence.
+    fn first_value<'p>(
+        &'p self,
+        variable: &VariableDeclaration<'p>,
+        last: &Facts<'p>,
+    ) -> Result<VariableDeclaration<'p>, Diagnostic> {
+        let name = self.global_name(variable.name.value);
+        if !self.is_begun_with() || !self.effect_of_call(self.root).changes(name) {
+            return Ok(variable.clone());
+        }
+        match last.constant(name) {
+            Some(value) => Ok(VariableDeclaration { value: value.clone(), ..variable.clone() }),
+            None => {
+                let message = format!("what `{name}` is in the end is not known");
+                let why = "the inverse begins with the value that this has in the end";
+                Err(refusal(variable.span, &message, why)
+                    .with_help("count it up outside of loops, or let a sequence count for itself"))
+            }
+        }
+    }
+
+    /// The inverse as a program.
+    pub(super) fn inverse(&self) -> Result<Program<'_>, Vec<Diagnostic>> {
+        let mut inverter = Inverter::new(self, self.entries());
+        let mut inverses: HashMap<&str, Sequence<'_>> = HashMap::new();
+        for sequence in &self.order {
+            let inverse = inverter.sequence(sequence);
+            inverses.insert(sequence.name.value, inverse);
+        }
+        let last = inverter.facts.clone();
+        let mut io = inverter.into_result()?;
+        let mut items = Vec::new();
+        for item in &self.program.items {
+            let (inverse, is_kept) = match item {
+                Item::Sequence(sequence) => {
+                    (inverses.remove(sequence.name.value).map(Item::Sequence), false)
+                }
+                Item::Io(one) => {
+                    let name = one.name.value;
+                    (io.made.remove(name).map(Item::Io), io.kept.contains(name))
+                }
+                Item::Cell(_) => (None, true),
+                _ => (None, false),
+            };
+            let item = match item {
+                Item::Variable(variable) => {
+                    let first = self.first_value(variable, &last).map_err(|why| vec![why])?;
+                    Item::Variable(first)
+                }
+                _ => item.clone(),
+            };
+            items.push(Part { item, is_inverse: false, is_needed: is_kept });
+            let made = |item| Part { item, is_inverse: true, is_needed: true };
+            items.extend(inverse.map(made));
+        }
+        self.refuse_two_meanings(&items)?;
+        let mut program = Program { items: needed(items) };
+        self.add_main(&mut program);
+        Ok(program)
+    }
+
+    /// What stands in blocks that are kept whole calls sequences of the program as they are: none
+    /// of their names may be that of an inverse.
+    fn refuse_two_meanings(&self, parts: &[Part<'_>]) -> Result<(), Vec<Diagnostic>> {
+        let made: HashSet<&str> =
+            parts.iter().filter(|part| part.is_inverse).filter_map(|part| name_of(&part.item)).collect();
+        let mut found = Vec::new();
+        for sequence in &self.order {
+            walk::each_in(&sequence.body, &mut |statement| {
+                if let StatementKind::SkipInReverse(_) | StatementKind::ReplaceInReverse { .. } =
+                    &statement.kind
+                {
+                    walk::each_statement(statement, &mut |inner| found.extend(named(inner)));
+                }
+            });
+        }
+        let mut seen: HashSet<&str> = HashSet::new();
+        while let Some((name, span)) = found.pop() {
+            if !seen.insert(name) {
+                continue;
+            }
+            if made.contains(name) {
+                let message = format!("`{name}` would mean two things in the inverse");
+                let why = "this is called as it stands, and an inverse has the same name";
+                return Err(vec![
+                    refusal(span, &message, why).with_help("give one of them another name"),
+                ]);
+            }
+            if let Some(sequence) = self.sequence(name) {
+                walk::each_in(&sequence.body, &mut |inner| found.extend(named(inner)));
+            }
+        }
+        Ok(())
+    }
+
+    /// A main sequence that calls the inverse, if the program would not begin with it anyway.
+    fn add_main<'p>(&'p self, program: &mut Program<'p>) {
+        let Some(root) = self.sequence(self.root) else { return };
+        let name = self.inverse_name(root.name);
+        let main = main_of(program);
+        if main.is_some_and(|main| main.name.value == name.value || main.name.value == "main") {
+            return;
+        }
+        let span = root.name.span;
+        let call = StatementKind::Call { name, arguments: Vec::new() };
+        let is_changing = self.assigns(self.root) && !self.is_begun_with();
+        let statements = match root.parameters.is_empty() && !is_changing {
+            true => vec![Statement { kind: call, span }],
+            // Nobody knows the arguments, or with which values the variables begin.
+            false => Vec::new(),
+        };
+        program.items.push(Item::Sequence(Sequence {
+            name: Spanned::new("main", span),
+            is_action: false,
+            parameters: Vec::new(),
+            body: Block { statements, span },
+            span,
+        }));
+    }
+}
+
+/// The sequence that a program begins with: `main`, or else the last without parameters.
+fn main_of<'p, 's>(program: &'p Program<'s>) -> Option<&'p Sequence<'s>> {
+    let sequences = || {
+        program.items.iter().filter_map(|item| match item {
+            Item::Sequence(sequence) => Some(sequence),
+            _ => None,
+        })
+    };
+    let begins = |sequence: &&Sequence<'_>| !sequence.is_action && sequence.parameters.is_empty();
+    sequences().find(|one| one.name.value == "main").or_else(|| sequences().filter(begins).last())
+}
+
+/// What a sequence calls that is inverted with it: not what stands in blocks that are kept whole.
+fn inverted_calls<'s>(sequence: &'s Sequence<'s>) -> Vec<(&'s str, Span)> {
+    fn collect<'s>(block: &'s Block<'s>, calls: &mut Vec<(&'s str, Span)>) {
+        for statement in &block.statements {
+            match &statement.kind {
+                StatementKind::Call { name, .. } => calls.push((name.value, statement.span)),
+                StatementKind::SkipInReverse(_) | StatementKind::ReplaceInReverse { .. } => {}
+                _ => walk::blocks(statement).into_iter().for_each(|block| collect(block, calls)),
+            }
+        }
+    }
+    let mut calls = Vec::new();
+    collect(&sequence.body, &mut calls);
+    calls
+}
+
+fn all_calls<'s>(sequence: &'s Sequence<'s>) -> Vec<(&'s str, Span)> {
+    let mut calls = Vec::new();
+    walk::each_in(&sequence.body, &mut |statement| {
+        if let StatementKind::Call { name, .. } = &statement.kind {
+            calls.push((name.value, statement.span));
+        }
+    });
+    calls
+}
+
+/// The inverse of `pick` is `pick_inverse`, and that of `pick_inverse` is `pick`.
+fn inverse_name(name: &str) -> String {
+    match name.strip_suffix(SUFFIX).filter(|rest| !rest.is_empty()) {
+        Some(rest) => rest.to_owned(),
+        None => format!("{name}{SUFFIX}"),
+    }
+}
+
+/// What a statement calls as it stands.
+fn named<'s>(statement: &Statement<'s>) -> Option<(&'s str, Span)> {
+    match &statement.kind {
+        StatementKind::Call { name, .. } | StatementKind::Io(name) => {
+            Some((name.value, statement.span))
+        }
+        _ => None,
+    }
+}
+
+/// A declaration of the program, or an inverse.
+struct Part<'p> {
+    item: Item<'p>,
+    is_inverse: bool,
+    is_needed: bool,
+}
+
+/// What inverses need, themselves included: what is named in them, and what is named in that.
+fn needed(mut parts: Vec<Part<'_>>) -> Vec<Item<'_>> {
+    let mut by_name: HashMap<&str, usize> = HashMap::new();
+    for (index, part) in parts.iter().enumerate() {
+        // That of an inverse comes first: what has its name otherwise is not meant.
+        if let Some(name) = name_of(&part.item)
+            && (part.is_inverse || !by_name.contains_key(name))
+        {
+            by_name.insert(name, index);
+        }
+    }
+    let mut to_visit: Vec<usize> =
+        (0..parts.len()).filter(|&index| parts[index].is_needed).collect();
+    while let Some(index) = to_visit.pop() {
+        for word in words_of(&parts[index].item) {
+            if let Some(&found) = by_name.get(word.as_str())
+                && !std::mem::replace(&mut parts[found].is_needed, true)
+            {
+                to_visit.push(found);
+            }
+        }
+    }
+    parts.into_iter().filter(|part| part.is_needed).map(|part| part.item).collect()
+}
+
+fn name_of<'s>(item: &Item<'s>) -> Option<&'s str> {
+    match item {
+        Item::Cell(_) => None,
+        Item::Io(io) => Some(io.name.value),
+        Item::Joints(joints) => Some(joints.name.value),
+        Item::ItemDeclaration(item) => Some(item.name.value),
+        Item::Error(error) => Some(error.name.value),
+        Item::AdvancedMove(advanced) => Some(advanced.name.value),
+        Item::Variable(variable) => Some(variable.name.value),
+        Item::Sequence(sequence) => Some(sequence.name.value),
+    }
+}
+
+/// The words that a declaration is written with; the names that it needs are among them.
+fn words_of(item: &Item<'_>) -> BTreeSet<String> {
+    let text = print(&Program { items: vec![item.clone()] });
+    let is_of_word = |c: char| c.is_ascii_alphanumeric() || c == '_';
+    text.split(|c| !is_of_word(c)).filter(|word| !word.is_empty()).map(str::to_owned).collect()
+}
