@@ -7,6 +7,8 @@
 //!                    on a line those of the line above; asserted, never written
 //! compile/NAME.obv   its disassembly but for the source text: NAME.obvasm
 //! run/NAME.obv       what `obverse run` tells: NAME.txt, and what `obverse back`: back/NAME.txt
+//! invert/NAME.obv    the inverse of its `main`, or why there is none, at the lines that say so:
+//!                    NAME.txt
 //! asm/NAME.obvasm    what is wrong with assembly text, or with the module that it says: NAME.txt
 //! ```
 //!
@@ -15,6 +17,7 @@
 
 use libtest_mimic::{Arguments, Failed, Trial};
 use obverse_bytecode::{Module, assemble, disassemble, verify};
+use obverse_compiler::NoInverse;
 use obverse_syntax::codes::Code;
 use obverse_syntax::diagnostic::Diagnostic;
 use obverse_syntax::source::LineIndex;
@@ -53,7 +56,7 @@ fn walk() -> (Vec<Golden>, BTreeSet<String>) {
         goldens.push(Golden { source: source.to_owned(), render, kept });
     };
     let mut strays = BTreeSet::new();
-    for folder in ["diag", "compile", "run", "back", "asm"] {
+    for folder in ["diag", "compile", "run", "back", "invert", "asm"] {
         for name in names_in(folder) {
             let file = format!("{folder}/{name}");
             match (folder, name.rsplit_once('.')) {
@@ -64,6 +67,9 @@ fn walk() -> (Vec<Golden>, BTreeSet<String>) {
                 ("run", Some((stem, "obv"))) => {
                     add(&file, run, format!("run/{stem}.txt"));
                     add(&file, back, format!("back/{stem}.txt"));
+                }
+                ("invert", Some((stem, "obv"))) => {
+                    add(&file, inverted, format!("invert/{stem}.txt"));
                 }
                 ("asm", Some((stem, "obvasm"))) => add(&file, refused, format!("asm/{stem}.txt")),
                 // Workcells.
@@ -201,6 +207,21 @@ fn diagnosed(file: &str) -> Result<String, Failed> {
     printed(&["check", file])
 }
 
+/// What `obverse invert` says, if it refuses what the source says that it does.
+fn inverted(file: &str) -> Result<String, Failed> {
+    let source = text(file)?;
+    let said = if source.contains("//~") { said(file)? } else { Placed::new() };
+    let found = match obverse_compiler::invert(file, &source, "main") {
+        Ok(_) => Placed::new(),
+        Err(NoInverse::Diagnosed(diagnostics)) => placed(&source, &diagnostics),
+        Err(NoInverse::UnknownSequence(_)) => return Err("it has no `main`".into()),
+    };
+    if found != said {
+        return Err(format!("it says that it has {said:?}, and it has {found:?}").into());
+    }
+    printed(&["invert", file, "main"])
+}
+
 /// Lines and codes of diagnostics.
 type Placed = BTreeSet<(usize, String)>;
 
@@ -237,6 +258,7 @@ fn every_diagnostic_is_shown() -> Result<(), Failed> {
     for name in names_in("diag").iter().filter(|name| name.ends_with(".obv")) {
         shown.extend(said(&format!("diag/{name}"))?.into_iter().map(|(_, code)| code));
     }
+    shown.extend(said("invert/refused.obv")?.into_iter().map(|(_, code)| code));
     let codes: BTreeSet<String> = Code::ALL.iter().map(ToString::to_string).collect();
     let missing: Vec<_> = codes.difference(&shown).collect();
     let unknown: Vec<_> = shown.difference(&codes).collect();

@@ -1,11 +1,11 @@
 //! The laws of the machine over generated modules: there and back, runs are steps, parsimony, write
-//! ahead, barrier, blocks, turns, round trips; those of the formatter; and those of compiler and
-//! machine together over generated programs, against the reference interpreter. `LAW_RUNS` sets how
-//! many programs each law sees; a failure prints the number of the program, and `LAW_SEED` runs that
-//! one alone.
+//! ahead, barrier, blocks, turns, round trips; those of the formatter and of inversion; and those
+//! of compiler and machine together over generated programs, against the reference interpreter.
+//! `LAW_RUNS` sets how many programs each law sees; a failure prints the number of the program, and
+//! `LAW_SEED` runs that one alone.
 
 use arbitrary::{Result, Unstructured};
-use obverse_testkit::{format_laws, laws, machine_laws};
+use obverse_testkit::{format_laws, invert_laws, laws, machine_laws};
 use std::collections::BTreeSet;
 
 /// How many modules each law sees.
@@ -63,6 +63,7 @@ laws! {
         turns >= 12
         round_trips >= 100;
     format_laws: formats >= 100 cut_off >= 100;
+    invert_laws: inverts_twice >= 45 inverse_goes_back >= 45 inverts_anything_twice >= 30;
     laws: compiles >= 100 agrees_forward >= 95 agrees_backward >= 75;
 }
 

@@ -457,14 +457,14 @@ codes! {
 
     // E05xx: inversion. The examples are inverted: their sequence `main`.
     NotInvertible "E0501" "something that has no inverse"
-        why "The inverse of a sequence is a program of its own, which knows nothing of the run that \
-             it takes back: it has no tape. So each statement must say by itself, or together with \
+        why "The inverse of a sequence is a program of its own, which knows nothing of the run \
+             that it takes back: it has no tape. So each statement must say by itself, or with \
              those before it, what takes it back. A move goes back to the place that was named \
-             before it; an output to the level that it was set to before, or to the counterpart of \
-             its I/O operation; `x += e` is taken back by `x -= e`; a branch or a loop by its \
-             assertion (`ending when`, `entered when`) or by what it leaves alone. Readings, errors, \
-             barriers and ways out of the middle leave no such trace. A sequence begins where its \
-             first move leads, with the outputs that are set before it."
+             before it; an output to the level that it was set to before, or to the counterpart \
+             of its I/O operation; `x += e` is taken back by `x -= e`; a branch or a loop by its \
+             assertion (`ending when`, `entered when`) or by what it leaves alone. Readings, \
+             errors, barriers and ways out of the middle leave no such trace. A sequence begins \
+             where its first move leads, with the outputs that are set before it."
         wrong "joints a = [0, 0, 0, 0, 0, 0] deg\n\
                joints b = [9, 0, 0, 0, 0, 0] deg\n\
                sequence main { move to a move 20 mm up in base move to b }"

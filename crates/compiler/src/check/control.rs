@@ -14,6 +14,9 @@ use obverse_syntax::codes::Code;
 use obverse_syntax::diagnostic::Diagnostic;
 use obverse_syntax::span::Span;
 
+/// The name of a loop's counter, if it has one, and what it means.
+type Counted<'s> = Option<(Name<'s>, fn(CounterId) -> Meaning)>;
+
 impl<'s> Checker<'s> {
     /// A branch or a loop.
     pub(super) fn control(&mut self, written: &ast::Statement<'s>) -> Checked {
@@ -104,7 +107,7 @@ impl<'s> Checker<'s> {
 
     fn counted(
         &mut self,
-        name: Option<(Name<'s>, fn(CounterId) -> Meaning)>,
+        counted: Counted<'s>,
         (first, last): (Expression, Expression),
         body: &ast::Block<'s>,
         header: Span,
@@ -119,7 +122,7 @@ impl<'s> Checker<'s> {
         self.frame.counters = self.frame.counters.saturating_add(1);
         self.frame.layout.counters = self.frame.layout.counters.max(self.frame.counters);
         let scope = self.names.open();
-        if let Some((name, meaning)) = name {
+        if let Some((name, meaning)) = counted {
             self.declare(name, meaning(counter));
             self.names.mark_used(name.value);
         }

@@ -1,7 +1,7 @@
 //! Expressions: names, literals and readings, and whether a value is what is needed.
 
-use super::control::complement;
 use super::Checker;
+use super::control::complement;
 use super::frame::Readings;
 use super::names::{Found, Meaning};
 use crate::tree::{Expression, ExpressionKind, Hoist, Prepared};

@@ -68,10 +68,7 @@ impl Meaning {
     }
 
     fn is_of_frame(self) -> bool {
-        matches!(
-            self,
-            Self::Local(..) | Self::Counter(_) | Self::CountDown(_) | Self::Position(_)
-        )
+        matches!(self, Self::Local(..) | Self::Counter(_) | Self::CountDown(_) | Self::Position(_))
     }
 }
 

@@ -8,6 +8,7 @@ use obverse_syntax::ast::{
     AssignOperator, Expression, Name, Statement, StatementKind, VariableDeclaration,
 };
 use obverse_syntax::span::Span;
+use std::collections::HashMap;
 use std::ops::Range;
 
 /// A variable of a block: the statements from after its declaration to its last use.
@@ -17,40 +18,47 @@ impl<'p> Inverter<'p> {
     /// The variables that a block declares. Each must be declared right before the statement that
     /// first uses it: that is where the inverse of an inverse has it.
     pub(super) fn variables(&mut self, statements: &'p [Statement<'p>]) -> Vec<Scope<'p>> {
-        let mut scopes = Vec::new();
+        let mut uses: HashMap<&str, Range<usize>> = HashMap::new();
         for (index, statement) in statements.iter().enumerate() {
-            let StatementKind::Variable(variable) = &statement.kind else { continue };
-            let name = variable.name.value;
-            let uses = |statement: &Statement<'p>| walk::mentions(statement, name);
-            let after = &statements[index + 1..];
-            let is_declaration = |statement: &&Statement<'p>| {
-                matches!(statement.kind, StatementKind::Variable(_)) && !uses(statement)
-            };
-            let first = index + 1 + after.iter().take_while(is_declaration).count();
-            match statements.get(first).filter(|next| uses(next)) {
-                Some(_) => {
-                    let last = after.iter().rposition(uses).map_or(first, |at| index + 1 + at);
-                    scopes.push((index + 1..last + 1, variable));
-                }
-                None => self.refuse_early_declaration(variable, after),
+            for name in walk::mentioned(statement) {
+                uses.entry(name).or_insert(index..index).end = index;
             }
         }
+        let is_declaration =
+            |statement: &Statement<'p>| matches!(statement.kind, StatementKind::Variable(_));
+        let mut scopes = Vec::new();
+        let mut next_other = statements.len();
+        for (index, statement) in statements.iter().enumerate().rev() {
+            if !is_declaration(statement) {
+                next_other = index;
+            }
+            let StatementKind::Variable(variable) = &statement.kind else { continue };
+            match uses.get(variable.name.value) {
+                Some(used) if used.start <= next_other => {
+                    scopes.push((index + 1..used.end + 1, variable));
+                }
+                used => {
+                    let first = used.and_then(|used| statements.get(used.start));
+                    self.refuse_early_declaration(variable, first.map(|first| first.span));
+                }
+            }
+        }
+        scopes.reverse();
         scopes
     }
 
     fn refuse_early_declaration(
         &mut self,
         variable: &VariableDeclaration<'p>,
-        after: &[Statement<'p>],
+        first_use: Option<Span>,
     ) {
         let name = variable.name.value;
         let message = format!("`{name}` is declared before it is needed");
         let why = "an inverse declares it right before its first use";
         let diagnostic = refusal(variable.span, &message, why);
-        let first = after.iter().find(|statement| walk::mentions(statement, name));
-        self.refuse(match first {
+        self.refuse(match first_use {
             Some(first) => diagnostic
-                .with_label(first.span, "first used here")
+                .with_label(first, "first used here")
                 .with_help("declare it right before that: then its inverse has one meaning"),
             None => diagnostic.with_help("leave it out: nothing uses it"),
         });

@@ -2,6 +2,7 @@
 //! inverted by whom.
 
 use super::effect::{Effect, Facts};
+use super::output::body_text;
 use super::place::{Arm, Spot, Tool};
 use super::program::Plan;
 use super::pure;
@@ -28,6 +29,8 @@ pub(super) struct Inverter<'p> {
     pub(super) facts: Facts<'p>,
     pub(super) arm: Arm<'p>,
     pub(super) tool: Tool<'p>,
+    /// What is done by statements that do not go back to former levels, and where.
+    pub(super) opaque: Vec<(Effect<'p>, Span)>,
     /// The parameters of the sequence in hand.
     pub(super) parameters: Vec<&'p str>,
     /// The call that the sequence in hand begins with, whose first move is its own.
@@ -39,6 +42,8 @@ pub(super) struct Inverter<'p> {
 /// each is the inverse of; and those that are kept since they are the inverse of another.
 #[derive(Default)]
 pub(super) struct NewIo<'p> {
+    /// Those of the program without a counterpart, by what they do.
+    pub(super) known: HashMap<String, Vec<&'p IoOperation<'p>>>,
     pub(super) made: BTreeMap<&'p str, IoOperation<'p>>,
     pub(super) kept: BTreeSet<&'p str>,
 }
@@ -89,15 +94,20 @@ impl<'p> Emitted<'p> {
 
 impl<'p> Inverter<'p> {
     pub(super) fn new(plan: &'p Plan<'p>, entries: HashMap<&'p str, Facts<'p>>) -> Self {
+        let mut io = NewIo::default();
+        for one in plan.io_operations().filter(|one| one.counterpart.is_none()) {
+            io.known.entry(body_text(&one.primitives)).or_default().push(one);
+        }
         Self {
             plan,
             entries,
             summaries: HashMap::new(),
             refusals: Refusals::default(),
-            io: NewIo::default(),
+            io,
             facts: Facts::default(),
             arm: Arm::new(),
             tool: None,
+            opaque: Vec::new(),
             parameters: Vec::new(),
             first_call: None,
             first_move: None,
@@ -194,7 +204,14 @@ impl<'p> Inverter<'p> {
             index = unit.end;
             let mut group = match statement.kind {
                 StatementKind::Variable(_) => Vec::new(),
-                _ => self.unit(&statements[unit.clone()]),
+                // Only the statements in its blocks are followed on the way.
+                _ if walk::blocks(statement).is_empty() => self.unit(&statements[unit.clone()]),
+                _ => {
+                    let facts = self.facts.clone();
+                    let group = self.unit(&statements[unit.clone()]);
+                    self.facts = facts;
+                    group
+                }
             };
             for statement in &statements[unit.clone()] {
                 self.facts.after(statement, self.plan);
@@ -219,12 +236,9 @@ impl<'p> Inverter<'p> {
         for name in effect.variables() {
             self.arm.forget(name, statement.span);
         }
-        let is_kept = matches!(
-            statement.kind,
-            StatementKind::SkipInReverse(_) | StatementKind::ReplaceInReverse { .. }
-        );
-        if effect.is_open() && !is_kept {
-            self.arm = Arm::refused();
+        if effect.is_open() {
+            let plan = self.plan;
+            self.arm.forget_all(|name| plan.is_constant(name), statement.span);
         }
     }
 
@@ -283,6 +297,7 @@ impl<'p> Inverter<'p> {
             | StatementKind::Irreversible { .. }
             | StatementKind::Throw(_) => {
                 self.refuse(never(statement));
+                self.arm = Arm::refused();
                 Vec::new()
             }
         }
@@ -309,9 +324,7 @@ fn unit_length(statements: &[Statement<'_>]) -> usize {
 /// The statements, without moves that what follows begins with.
 fn joined(emitted: Vec<Emitted<'_>>) -> Vec<Statement<'_>> {
     let repeated: Vec<bool> = (0..emitted.len())
-        .map(|index| {
-            emitted.get(index + 1).is_some_and(|next| emitted[index].is_repeated_by(next))
-        })
+        .map(|index| emitted.get(index + 1).is_some_and(|next| emitted[index].is_repeated_by(next)))
         .collect();
     let kept = emitted.into_iter().zip(repeated).filter(|(_, is_repeated)| !is_repeated);
     kept.map(|(emitted, _)| emitted.statement).collect()

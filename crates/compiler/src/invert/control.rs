@@ -70,10 +70,9 @@ impl<'p> Inverter<'p> {
         }
         let (facts, arm) = (self.facts.clone(), self.arm.clone());
         let then = self.block(then);
-        self.facts.clone_from(&facts);
+        self.facts = facts;
         let after_then = std::mem::replace(&mut self.arm, arm);
         let otherwise = otherwise.map(|block| self.block(block));
-        self.facts = facts;
         if !after_then.is_same(&self.arm) {
             self.arm = Arm::lost("two ways that end elsewhere join after this", span);
         }
@@ -120,10 +119,9 @@ impl<'p> Inverter<'p> {
 
     /// The body of a loop: it must end where it begins.
     fn body(&mut self, body: &'p Block<'p>, statement: &Statement<'p>) -> Block<'p> {
-        let (facts, before) = (self.facts.clone(), self.arm.clone());
+        let before = self.arm.clone();
         self.facts.at_head(statement, self.plan);
         let inverse = self.block(body);
-        self.facts = facts;
         if self.arm.is_same(&before) {
             return inverse;
         }

@@ -111,9 +111,9 @@ impl<'s> Facts<'s> {
                 Change::SetOrKept(value) if self.get(*key) == Some(value) => {}
                 Change::SetOrKept(_) | Change::Unknown => _ = self.0.remove(key),
                 Change::Added(_) | Change::Flipped => {
-                    match self.0.remove(key).and_then(|value| change.of_value(&value)) {
-                        Some(value) => self.set(*key, value),
-                        None => {}
+                    let value = self.0.remove(key);
+                    if let Some(value) = value.and_then(|value| change.of_value(&value)) {
+                        self.set(*key, value);
                     }
                 }
             }
@@ -171,9 +171,7 @@ impl<'s> Change<'s> {
             (_, next @ (Self::Set(_) | Self::Unknown)) => next,
             (Self::Set(value), next) => next.of_value(&value).map_or(Self::Unknown, Self::Set),
             (Self::SetOrKept(a), Self::SetOrKept(b)) if a == b => Self::SetOrKept(a),
-            (Self::Added(a), Self::Added(b)) => {
-                a.checked_add(b).map_or(Self::Unknown, Self::Added)
-            }
+            (Self::Added(a), Self::Added(b)) => a.checked_add(b).map_or(Self::Unknown, Self::Added),
             _ => Self::Unknown,
         }
     }
@@ -193,6 +191,11 @@ impl<'s> Effect<'s> {
     /// Whether any of these variables is.
     pub(super) fn changes_any(&self, names: &[&'s str]) -> bool {
         names.iter().any(|name| self.changes(name))
+    }
+
+    /// Whether an output is changed, or may be.
+    pub(super) fn sets(&self, bit: u64) -> bool {
+        self.is_open || self.changes.contains_key(&Key::Output(bit))
     }
 
     /// The variables that are changed.
@@ -229,7 +232,15 @@ impl<'s> Effect<'s> {
     /// That of a statement.
     pub(super) fn of_statement(statement: &Statement<'s>, declared: &impl Declared<'s>) -> Self {
         match &statement.kind {
-            StatementKind::Io(name) => Self::of_io(declared.io(name.value)),
+            StatementKind::Io(name) => {
+                let io = declared.io(name.value);
+                let counterpart = io.and_then(|io| io.counterpart);
+                let counterpart = counterpart.and_then(|other| declared.io(other.value));
+                match counterpart {
+                    Some(_) => Self::of_io(io).either(Self::of_io(counterpart)),
+                    None => Self::of_io(io),
+                }
+            }
             StatementKind::Primitive(primitive) => Self::of_primitive(primitive),
             StatementKind::Call { name, .. } => declared.effect_of_call(name.value),
             StatementKind::Variable(variable) => {
@@ -269,9 +280,13 @@ impl<'s> Effect<'s> {
             StatementKind::Speed { block, .. } | StatementKind::Tool { block, .. } => {
                 block.as_ref().map(|block| Self::of_block(block, declared)).unwrap_or_default()
             }
-            StatementKind::SkipInReverse(block)
-            | StatementKind::Irreversible { block, .. }
-            | StatementKind::ReplaceInReverse { block, .. } => Self::of_block(block, declared),
+            StatementKind::Irreversible { block, .. } => Self::of_block(block, declared),
+            StatementKind::SkipInReverse(block) => {
+                Self::of_block(block, declared).either(Self::default())
+            }
+            StatementKind::ReplaceInReverse { block, replacement } => {
+                Self::of_block(block, declared).either(Self::of_block(replacement, declared))
+            }
             // Statements behind these may be left out, and errors may have anything done.
             StatementKind::Loop(_)
             | StatementKind::Break
@@ -286,7 +301,8 @@ impl<'s> Effect<'s> {
         }
     }
 
-    fn of_io(io: Option<&IoOperation<'s>>) -> Self {
+    /// That of an I/O operation.
+    pub(super) fn of_io(io: Option<&IoOperation<'s>>) -> Self {
         let mut effect = Self::default();
         for primitive in io.iter().flat_map(|io| &io.primitives) {
             effect.then(Self::of_primitive(primitive));
@@ -324,8 +340,21 @@ impl<'s> Effect<'s> {
                 Some(former) => former.then(change),
                 None => change,
             };
-            self.changes.insert(key, joined);
+            match joined {
+                // There and back is no change.
+                Change::Added(0) => {}
+                joined => _ = self.changes.insert(key, joined),
+            }
         }
+    }
+
+    /// What has one effect going forward and another in reverse: what either changes is not known,
+    /// so that nothing is known of a sequence that is not known of its inverse.
+    fn either(mut self, other: Self) -> Self {
+        self.changes.extend(other.changes);
+        self.changes.values_mut().for_each(|change| *change = Change::Unknown);
+        self.is_open |= other.is_open;
+        self
     }
 
     /// This or another.
@@ -401,12 +430,10 @@ fn literal<'s>(value: i64, span: Span) -> Option<Expression<'s>> {
 fn integer(expression: &Expression<'_>) -> Option<i64> {
     match &expression.kind {
         ExpressionKind::Integer(value) => Some(*value),
-        ExpressionKind::Unary { operator: UnaryOperator::Negate, operand } => {
-            match operand.kind {
-                ExpressionKind::Integer(value) => value.checked_neg(),
-                _ => None,
-            }
-        }
+        ExpressionKind::Unary { operator: UnaryOperator::Negate, operand } => match operand.kind {
+            ExpressionKind::Integer(value) => value.checked_neg(),
+            _ => None,
+        },
         _ => None,
     }
 }

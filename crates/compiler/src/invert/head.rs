@@ -4,7 +4,7 @@
 //! the same to what it is in the end.
 
 use super::block::{Emitted, FirstMove, Inverter, Summary};
-use super::effect::{Declared, constant};
+use super::effect::{Declared, Effect, constant};
 use super::place::{Arm, Spot};
 use super::refusal::refusal;
 use obverse_syntax::ast::{
@@ -102,6 +102,7 @@ impl<'p> Inverter<'p> {
     ) -> Vec<Emitted<'p>> {
         let mut emitted = Vec::new();
         for statement in head.statements {
+            self.require_restored(statement);
             let kind = match &statement.kind {
                 StatementKind::Move { .. } => self.first_move_of_inverse(sequence),
                 StatementKind::Primitive(Primitive::Set { bit, span, .. }) => {
@@ -109,16 +110,18 @@ impl<'p> Inverter<'p> {
                         StatementKind::Primitive(Primitive::Set { bit: *bit, high, span: *span })
                     })
                 }
-                StatementKind::Io(name) => {
-                    self.plan.io(name.value).cloned().and_then(|io| {
-                        let last = |primitive: &Primitive<'p>| self.in_the_end(primitive);
-                        let primitives: Option<Vec<_>> = io.primitives.iter().map(last).collect();
-                        self.io_of(&io, primitives?, statement.span).map(StatementKind::Io)
-                    })
-                }
+                StatementKind::Io(name) => self.plan.io(name.value).cloned().and_then(|io| {
+                    let last = |primitive: &Primitive<'p>| self.in_the_end(primitive);
+                    let primitives: Option<Vec<_>> = io.primitives.iter().map(last).collect();
+                    self.io_of(&io, primitives?, statement.span).map(StatementKind::Io)
+                }),
                 StatementKind::Assign { name, operator, .. } => {
                     let last = self.facts.constant(name.value).cloned();
-                    last.map(|value| StatementKind::Assign { name: *name, operator: *operator, value })
+                    last.map(|value| StatementKind::Assign {
+                        name: *name,
+                        operator: *operator,
+                        value,
+                    })
                 }
                 _ => Some(statement.kind.clone()),
             };
@@ -167,6 +170,29 @@ impl<'p> Inverter<'p> {
         }
     }
 
+    /// An output that the head sets must be back at its level when the inverse ends.
+    fn require_restored(&mut self, statement: &Statement<'p>) {
+        let bits: Vec<u64> = match &statement.kind {
+            StatementKind::Primitive(primitive) => output_of(primitive).into_iter().collect(),
+            StatementKind::Io(name) => {
+                let io = self.plan.io(name.value);
+                io.iter().flat_map(|io| &io.primitives).filter_map(output_of).collect()
+            }
+            _ => return,
+        };
+        let sets = |effect: &Effect<'p>| bits.iter().any(|bit| effect.sets(*bit));
+        let found = self.opaque.iter().find(|(effect, _)| sets(effect)).map(|(_, span)| *span);
+        if let Some(place) = found {
+            let message = "an output does not come back to the level that it begins with";
+            let why = "what leads back here says by itself to which level";
+            self.refuse(
+                refusal(place, message, why)
+                    .with_label(statement.span, "the sequence begins with this level")
+                    .with_help("leave the output out of one of the two"),
+            );
+        }
+    }
+
     fn refuse_open_end(&mut self, place: Span) {
         let message = "what this begins with is not known in the end";
         let why = "the inverse begins with what it is in the end";
@@ -194,6 +220,13 @@ impl<'p> Bound<'p> {
             Primitive::Toggle { .. } => false,
             Primitive::Sleep { duration, .. } => is_constant_time(duration),
         }
+    }
+}
+
+fn output_of(primitive: &Primitive<'_>) -> Option<u64> {
+    match primitive {
+        Primitive::Set { bit, .. } | Primitive::Toggle { bit, .. } => Some(bit.value),
+        Primitive::Sleep { .. } => None,
     }
 }
 

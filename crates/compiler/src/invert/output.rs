@@ -1,11 +1,9 @@
 //! Outputs: each goes back to the level that it had, and I/O operations to their counterparts.
 
 use super::block::{Emitted, Inverter};
-use super::effect::Declared;
+use super::effect::{Declared, Effect};
 use super::refusal::refusal;
-use obverse_syntax::ast::{
-    IoOperation, Item, Name, Primitive, Program, Statement, StatementKind,
-};
+use obverse_syntax::ast::{IoOperation, Item, Name, Primitive, Program, Statement, StatementKind};
 use obverse_syntax::format::print;
 use obverse_syntax::span::{Span, Spanned};
 
@@ -59,7 +57,12 @@ impl<'p> Inverter<'p> {
     pub(super) fn io_operation(&mut self, name: Name<'p>, span: Span) -> Option<Emitted<'p>> {
         let io = self.plan.io(name.value)?;
         let inverse = match io.counterpart {
-            Some(counterpart) => self.counterpart(name, counterpart, span)?,
+            Some(counterpart) => {
+                for io in [Some(io), self.plan.io(counterpart.value)] {
+                    self.opaque.push((Effect::of_io(io), span));
+                }
+                self.counterpart(name, counterpart, span)?
+            }
             None => {
                 let primitives = self.undone(io, span)?;
                 self.io_of(io, primitives, span)?
@@ -135,14 +138,8 @@ impl<'p> Inverter<'p> {
         if own == wanted {
             return Some(Spanned::new(io.name.value, span));
         }
-        let like = |text: &str| {
-            let same = |other: &&'p IoOperation<'p>| {
-                other.counterpart.is_none() && body_text(&other.primitives) == text
-            };
-            let found: Vec<_> = self.plan.io_operations().filter(same).collect();
-            found
-        };
-        if let ([_], [other]) = (like(&own).as_slice(), like(&wanted).as_slice()) {
+        let like = |text: &str| self.io.known.get(text).map_or(&[][..], Vec::as_slice);
+        if let ([_], [other]) = (like(&own), like(&wanted)) {
             let name = Spanned::new(other.name.value, span);
             self.io.kept.insert(io.name.value);
             return Some(name);
@@ -173,7 +170,7 @@ impl<'p> Inverter<'p> {
 }
 
 /// What an I/O operation does, as text.
-fn body_text(primitives: &[Primitive<'_>]) -> String {
+pub(super) fn body_text(primitives: &[Primitive<'_>]) -> String {
     let name = Spanned::new("_", Span::default());
     let primitives = primitives.to_vec();
     let io = IoOperation { name, primitives, counterpart: None, span: Span::default() };

@@ -66,10 +66,6 @@ impl<'s> Spot<'s> {
         }
         Some(Self { target, tool: self.tool.or(tool) })
     }
-
-    fn reads(&self, name: &str) -> bool {
-        walk::names_of_target(&self.target).contains(&name)
-    }
 }
 
 /// Where the arm is.
@@ -172,16 +168,20 @@ impl<'s> Arm<'s> {
     }
 
     /// After a variable has changed: what was named by it is so no more.
-    pub(super) fn forget(&mut self, name: &str, span: Span) {
+    pub(super) fn forget(&mut self, changed: &str, span: Span) {
+        self.forget_all(|name| name != changed, span);
+    }
+
+    /// After all has changed but what these names stand for.
+    pub(super) fn forget_all(&mut self, is_kept: impl Fn(&str) -> bool, span: Span) {
         if let Base::Named(spot) = &self.base
-            && spot.reads(name)
+            && !walk::names_of_target(&spot.target).into_iter().all(&is_kept)
         {
             self.base = Base::Lost("the variable that names the place is changed here", span);
         }
         for shift in &mut self.shifts {
-            if shift.way.as_ref().is_some_and(|way| walk::names_of(&way.distance).contains(&name)) {
-                shift.way = None;
-            }
+            let is_known = |way: &Way<'_>| walk::names_of(&way.distance).into_iter().all(&is_kept);
+            shift.way = shift.way.take().filter(is_known);
         }
     }
 

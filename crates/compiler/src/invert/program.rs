@@ -30,6 +30,8 @@ pub(super) struct Plan<'s> {
     globals: HashSet<&'s str>,
     /// What a call changes, by sequence.
     effects: HashMap<&'s str, Effect<'s>>,
+    /// Whether the program begins with the sequence, and its inverse with the inverse.
+    is_begun_with: bool,
     /// The names of inverses, by the names of what they are the inverses of.
     inverse_names: HashMap<&'s str, String>,
 }
@@ -61,6 +63,7 @@ impl<'s> Plan<'s> {
             items: HashSet::new(),
             globals: HashSet::new(),
             effects: HashMap::new(),
+            is_begun_with: false,
             inverse_names: HashMap::new(),
         };
         for item in &program.items {
@@ -76,13 +79,15 @@ impl<'s> Plan<'s> {
         plan.find_effects();
         if let Some(root) = plan.sequences.get(root) {
             plan.root = root.name.value;
-            plan.order = plan.after_callees(&[root], inverted_calls).map_err(|again| {
+            let (order, again) = plan.after_callees(&[root], inverted_calls);
+            if let Some(again) = again {
                 let message = "a sequence that calls itself has no inverse";
-                vec![
-                    refusal(again, message, "it is under way already")
-                        .with_help("write the repetition as a loop"),
-                ]
-            })?;
+                let why = "it is under way already";
+                let help = "write the repetition as a loop";
+                return Err(vec![refusal(again, message, why).with_help(help)]);
+            }
+            plan.order = order;
+            plan.is_begun_with = plan.begins_with_root();
         }
         let names = plan.io.keys().chain(plan.sequences.keys());
         plan.inverse_names = names.map(|name| (*name, inverse_name(name))).collect();
@@ -131,7 +136,9 @@ impl<'s> Plan<'s> {
     pub(super) fn assigns(&self, name: &'s str) -> bool {
         let (mut seen, mut to_visit) = (HashSet::new(), vec![name]);
         while let Some(name) = to_visit.pop() {
-            let Some(sequence) = self.sequence(name).filter(|_| seen.insert(name)) else { continue };
+            let Some(sequence) = self.sequence(name).filter(|_| seen.insert(name)) else {
+                continue;
+            };
             let mut assigns = false;
             walk::each_in(&sequence.body, &mut |statement| match &statement.kind {
                 StatementKind::Assign { name, .. } => assigns |= self.is_global(name.value),
@@ -155,28 +162,22 @@ impl<'s> Plan<'s> {
 
     fn find_effects(&mut self) {
         let all: Vec<&Sequence<'s>> = self.sequences.values().copied().collect();
-        let order = match self.after_callees(&all, all_calls) {
-            Ok(order) => order,
-            // Of what calls itself nothing is known; nor, for simplicity, of anything else.
-            Err(_) => return,
-        };
-        for sequence in order {
+        // Of what calls itself nothing is known.
+        for sequence in self.after_callees(&all, all_calls).0 {
             let effect = Effect::of_block(&sequence.body, self);
             let effect = effect.of_variables(|name| self.globals.contains(name));
             self.effects.insert(sequence.name.value, effect);
         }
     }
 
-    /// These sequences and what they call, each after what it calls.
-    ///
-    /// # Errors
-    /// A call of what is under way.
+    /// These sequences and what they call, each after what it calls; and a call of what is under
+    /// way, if there is one.
     fn after_callees(
         &self,
         roots: &[&'s Sequence<'s>],
         calls: fn(&'s Sequence<'s>) -> Vec<(&'s str, Span)>,
-    ) -> Result<Vec<&'s Sequence<'s>>, Span> {
-        let mut done = Vec::new();
+    ) -> (Vec<&'s Sequence<'s>>, Option<Span>) {
+        let (mut done, mut again) = (Vec::new(), None);
         let mut is_done: HashMap<&str, bool> = HashMap::new();
         for &root in roots {
             if is_done.contains_key(root.name.value) {
@@ -193,7 +194,7 @@ impl<'s> Plan<'s> {
                 };
                 let Some(callee) = self.sequence(name) else { continue };
                 match is_done.get(name) {
-                    Some(false) => return Err(span),
+                    Some(false) => again = again.or(Some(span)),
                     Some(true) => {}
                     None => {
                         is_done.insert(name, false);
@@ -202,13 +203,13 @@ impl<'s> Plan<'s> {
                 }
             }
         }
-        Ok(done)
+        (done, again)
     }
 
     /// What is known where each sequence begins: what all its callers know.
     fn entries(&self) -> HashMap<&'s str, Facts<'s>> {
         let mut entries: HashMap<&'s str, Facts<'s>> = HashMap::new();
-        if self.is_begun_with() {
+        if self.is_begun_with {
             entries.insert(self.root, self.first_values());
         }
         for sequence in self.order.iter().rev() {
@@ -232,10 +233,10 @@ impl<'s> Plan<'s> {
                 StatementKind::Call { name, .. } => visit(name.value, &facts),
                 StatementKind::SkipInReverse(_) | StatementKind::ReplaceInReverse { .. } => {}
                 _ => {
-                    let mut inside = facts.clone();
-                    inside.at_head(statement, self);
                     for block in walk::blocks(statement) {
-                        self.each_call(block, inside.clone(), visit);
+                        let mut inside = facts.clone();
+                        inside.at_head(statement, self);
+                        self.each_call(block, inside, visit);
                     }
                 }
             }
@@ -244,16 +245,25 @@ impl<'s> Plan<'s> {
     }
 
     /// Whether the program begins with the sequence: it is the main sequence, or all that this
-    /// calls.
-    fn is_begun_with(&self) -> bool {
-        let Some(main) = main_of(self.program) else { return false };
+    /// calls. And what becomes of the variables of the program is known: otherwise nobody could
+    /// say with which values an inverse program begins.
+    fn begins_with_root(&self) -> bool {
+        let (Some(main), Some(root)) = (main_of(self.program), self.sequence(self.root)) else {
+            return false;
+        };
         let calls_it = match main.body.statements.as_slice() {
             [Statement { kind: StatementKind::Call { name, arguments }, .. }] => {
                 name.value == self.root && arguments.is_empty()
             }
             _ => false,
         };
-        main.name.value == self.root || calls_it
+        let mut facts = self.first_values();
+        root.body.statements.iter().for_each(|statement| facts.after(statement, self));
+        let effect = self.effect_of_call(self.root);
+        let mut changed = effect.variables();
+        (main.name.value == self.root || calls_it)
+            && !effect.is_open()
+            && changed.all(|name| facts.constant(name).is_some())
     }
 
     /// The variables of the program as they begin.
@@ -276,19 +286,12 @@ impl<'s> Plan<'s> {
         &'p self,
         variable: &VariableDeclaration<'p>,
         last: &Facts<'p>,
-    ) -> Result<VariableDeclaration<'p>, Diagnostic> {
+    ) -> VariableDeclaration<'p> {
         let name = self.global_name(variable.name.value);
-        if !self.is_begun_with() || !self.effect_of_call(self.root).changes(name) {
-            return Ok(variable.clone());
-        }
-        match last.constant(name) {
-            Some(value) => Ok(VariableDeclaration { value: value.clone(), ..variable.clone() }),
-            None => {
-                let message = format!("what `{name}` is in the end is not known");
-                let why = "the inverse begins with the value that this has in the end";
-                Err(refusal(variable.span, &message, why)
-                    .with_help("count it up outside of loops, or let a sequence count for itself"))
-            }
+        let is_changed = self.is_begun_with && self.effect_of_call(self.root).changes(name);
+        match last.constant(name).filter(|_| is_changed) {
+            Some(value) => VariableDeclaration { value: value.clone(), ..variable.clone() },
+            None => variable.clone(),
         }
     }
 
@@ -316,10 +319,7 @@ impl<'s> Plan<'s> {
                 _ => (None, false),
             };
             let item = match item {
-                Item::Variable(variable) => {
-                    let first = self.first_value(variable, &last).map_err(|why| vec![why])?;
-                    Item::Variable(first)
-                }
+                Item::Variable(variable) => Item::Variable(self.first_value(variable, &last)),
                 _ => item.clone(),
             };
             items.push(Part { item, is_inverse: false, is_needed: is_kept });
@@ -335,8 +335,11 @@ impl<'s> Plan<'s> {
     /// What stands in blocks that are kept whole calls sequences of the program as they are: none
     /// of their names may be that of an inverse.
     fn refuse_two_meanings(&self, parts: &[Part<'_>]) -> Result<(), Vec<Diagnostic>> {
-        let made: HashSet<&str> =
-            parts.iter().filter(|part| part.is_inverse).filter_map(|part| name_of(&part.item)).collect();
+        let made: HashSet<&str> = parts
+            .iter()
+            .filter(|part| part.is_inverse)
+            .filter_map(|part| name_of(&part.item))
+            .collect();
         let mut found = Vec::new();
         for sequence in &self.order {
             walk::each_in(&sequence.body, &mut |statement| {
@@ -366,17 +369,20 @@ impl<'s> Plan<'s> {
         Ok(())
     }
 
-    /// A main sequence that calls the inverse, if the program would not begin with it anyway.
+    /// A main sequence, if the program would not begin with the inverse anyway, or should not:
+    /// where the program does not begin with the sequence, nobody may take it for what it begins
+    /// with.
     fn add_main<'p>(&'p self, program: &mut Program<'p>) {
         let Some(root) = self.sequence(self.root) else { return };
         let name = self.inverse_name(root.name);
         let main = main_of(program);
-        if main.is_some_and(|main| main.name.value == name.value || main.name.value == "main") {
+        let is_main = |main: &Sequence<'_>| main.name.value == name.value && self.is_begun_with;
+        if main.is_some_and(|main| is_main(main) || main.name.value == "main") {
             return;
         }
         let span = root.name.span;
         let call = StatementKind::Call { name, arguments: Vec::new() };
-        let is_changing = self.assigns(self.root) && !self.is_begun_with();
+        let is_changing = self.assigns(self.root) && !self.is_begun_with;
         let statements = match root.parameters.is_empty() && !is_changing {
             true => vec![Statement { kind: call, span }],
             // Nobody knows the arguments, or with which values the variables begin.
@@ -401,7 +407,9 @@ fn main_of<'p, 's>(program: &'p Program<'s>) -> Option<&'p Sequence<'s>> {
         })
     };
     let begins = |sequence: &&Sequence<'_>| !sequence.is_action && sequence.parameters.is_empty();
-    sequences().find(|one| one.name.value == "main").or_else(|| sequences().filter(begins).last())
+    sequences()
+        .find(|one| one.name.value == "main")
+        .or_else(|| sequences().filter(begins).next_back())
 }
 
 /// What a sequence calls that is inverted with it: not what stands in blocks that are kept whole.

@@ -1,6 +1,7 @@
 //! Blocks with a reverse of their own: what is forward in one is in reverse in the other.
 
 use super::block::Inverter;
+use super::effect::Effect;
 use super::place::{Arm, Spot};
 use super::refusal::refusal;
 use super::walk;
@@ -12,6 +13,7 @@ impl<'p> Inverter<'p> {
     /// going back over the inverse does A.
     pub(super) fn skipped(&mut self, block: &'p Block<'p>, span: Span) -> StatementKind<'p> {
         self.require_no_assignment(block);
+        self.opaque.push((Effect::of_block(block, self.plan), span));
         if let Some(motion) = first_motion(block) {
             let message = "a motion that is skipped in reverse has no inverse";
             let why = "what is before this block would begin elsewhere";
@@ -30,7 +32,7 @@ impl<'p> Inverter<'p> {
     ) -> StatementKind<'p> {
         self.require_no_assignment(block);
         self.require_no_assignment(replacement);
-        if replacement.statements.is_empty() {
+        if replacement.statements.is_empty() && !block.statements.is_empty() {
             let message = "a block that nothing replaces has no inverse in these words";
             self.refuse(
                 refusal(span, message, "the inverse of its inverse would be another")
@@ -38,6 +40,9 @@ impl<'p> Inverter<'p> {
             );
         }
         self.follow_replaced(block, replacement);
+        for block in [block, replacement] {
+            self.opaque.push((Effect::of_block(block, self.plan), span));
+        }
         match block.statements.is_empty() {
             true => StatementKind::SkipInReverse(replacement.clone()),
             false => StatementKind::ReplaceInReverse {

@@ -151,16 +151,16 @@ pub(super) fn declared_in<'s>(block: &Block<'s>) -> BTreeSet<&'s str> {
     names
 }
 
-/// Whether a name stands anywhere in a statement as a value, a place or what is assigned.
-pub(super) fn mentions(statement: &Statement<'_>, name: &str) -> bool {
-    let mut found = false;
+/// The names that stand anywhere in a statement as a value, a place or what is assigned.
+pub(super) fn mentioned<'s>(statement: &Statement<'s>) -> Vec<&'s str> {
+    let mut names = Vec::new();
     each_statement(statement, &mut |inner| {
-        found |= expressions(inner).into_iter().any(|one| names_of(one).contains(&name));
-        found |= match &inner.kind {
-            StatementKind::Assign { name: assigned, .. } => assigned.value == name,
-            StatementKind::Move { target, .. } => names_of_target(target).contains(&name),
-            _ => false,
-        };
+        expressions(inner).into_iter().for_each(|one| names.extend(names_of(one)));
+        match &inner.kind {
+            StatementKind::Assign { name, .. } => names.push(name.value),
+            StatementKind::Move { target, .. } => names.extend(names_of_target(target)),
+            _ => {}
+        }
     });
-    found
+    names
 }
