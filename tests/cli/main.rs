@@ -3,6 +3,7 @@
 
 mod commands;
 mod fmt;
+mod invert;
 mod support;
 mod wrong_files;
 mod wrong_input;

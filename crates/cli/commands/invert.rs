@@ -3,7 +3,7 @@
 use super::Result;
 use crate::problem::{Diagnosed, Problem};
 use crate::{Outcome, load, report, show, write};
-use obverse_compiler::NoInverse;
+use obverse_compiler::{Inverse, NoInverse};
 use obverse_syntax::codes::Code;
 use obverse_syntax::diagnostic::Diagnostic;
 use serde_json::{Map, json};
@@ -51,15 +51,26 @@ fn is_refusal(diagnostics: &[Diagnostic]) -> bool {
     diagnostics.iter().all(|diagnostic| diagnostic.code == Code::NotInvertible)
 }
 
-fn told(arguments: &Arguments, file: &str, inverse: &str) -> Outcome {
+fn told(arguments: &Arguments, file: &str, inverse: &Inverse) -> Outcome {
     let plain = |text: &str| text.chars().filter(|c| !c.is_control()).collect::<String>();
     let (sequence, file) = (&arguments.sequence, plain(file));
-    let text = format!("// The inverse of `{sequence}` in {file}.\n\n{inverse}");
+    let mut text = format!("// The inverse of `{sequence}` in {file}.\n");
+    if !inverse.is_begun_with {
+        text += "//\n// `main` is empty: who calls the inverse knows its arguments, and has the \
+                 variables of the\n// program as the sequence leaves them.\n";
+    }
+    text += &format!("\n{}", inverse.text);
     if !arguments.json {
         write::exactly(&text);
         return Outcome::Done;
     }
-    let object = json!({ "type": "inverse", "sequence": sequence, "text": text });
+    let object = json!({
+        "type": "inverse",
+        "sequence": sequence,
+        "name": inverse.name,
+        "is_begun_with": inverse.is_begun_with,
+        "text": text,
+    });
     write::line(&object.to_string());
     report::summary("inverted", Map::new(), Map::new());
     Outcome::Done

@@ -23,7 +23,7 @@ use obverse_bytecode::Module;
 use obverse_syntax::diagnostic::{Diagnostic, Severity};
 use report::Reports;
 
-pub use invert::{NoInverse, invert};
+pub use invert::{Inverse, NoInverse, invert};
 
 /// What became of a source text.
 #[derive(Clone, Debug)]

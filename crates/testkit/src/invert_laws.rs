@@ -50,7 +50,7 @@ pub fn inverts_anything_twice(u: &mut Unstructured<'_>) -> Result<bool> {
 /// The same for a sequence of a program; whether that has an inverse.
 pub fn inverts_twice_on(source: &str, sequence: &str) -> bool {
     let once = match invert("program.obv", source, sequence) {
-        Ok(once) => once,
+        Ok(once) => once.text,
         Err(NoInverse::Diagnosed(found)) => {
             assert!(!found.is_empty(), "refused without a reason\n{source}");
             return false;
@@ -60,7 +60,8 @@ pub fn inverts_twice_on(source: &str, sequence: &str) -> bool {
     assert_eq!(format(&once).as_ref(), Ok(&once), "the inverse is formatted");
     let inverse = format!("{sequence}_inverse");
     let twice = invert("program.obv", &once, &inverse)
-        .unwrap_or_else(|why| panic!("the inverse has none: {why:#?}\n{source}\n{once}"));
+        .unwrap_or_else(|why| panic!("the inverse has none: {why:#?}\n{source}\n{once}"))
+        .text;
     let kept = restricted(source, &twice, sequence);
     assert!(meaning(&twice) == meaning(&kept), "twice is not once:\n{kept}\n{once}\n{twice}");
     true
@@ -113,7 +114,7 @@ pub fn inverse_goes_back_on(program: &Invertible, seed: u64) -> bool {
     let Ok(inverse) = invert("program.obv", &alone, "work") else { return false };
     let both = format!(
         "{}sequence main {{\n{head}  call work\n  call work_inverse\n}}\n",
-        together(source, &inverse)
+        together(source, &inverse.text)
     );
     let (there, back) = (verified(&alone), verified(&both));
     let Some(expected) = there_and_back(&there, seed) else { return false };
@@ -122,8 +123,8 @@ pub fn inverse_goes_back_on(program: &Invertible, seed: u64) -> bool {
     true
 }
 
-/// A program with the declarations of another that it does not have.
-fn together(source: &str, other: &str) -> String {
+/// A program with the declarations of another that it does not have, but for its main sequence.
+pub fn together(source: &str, other: &str) -> String {
     let (program, other) = (parse(source).program, parse(other).program);
     let known: BTreeSet<&str> = program.items.iter().filter_map(name_of).collect();
     let is_new = |item: &&Item<'_>| {

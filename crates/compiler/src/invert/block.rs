@@ -31,7 +31,9 @@ pub(super) struct Inverter<'p> {
     pub(super) tool: Tool<'p>,
     /// What is done by statements that do not go back to former levels, and where.
     pub(super) opaque: Vec<(Effect<'p>, Span)>,
-    /// The parameters of the sequence in hand.
+    /// The sequence in hand.
+    name: &'p str,
+    /// Its parameters.
     pub(super) parameters: Vec<&'p str>,
     /// The call that the sequence in hand begins with, whose first move is its own.
     pub(super) first_call: Option<Span>,
@@ -108,6 +110,7 @@ impl<'p> Inverter<'p> {
             arm: Arm::new(),
             tool: None,
             opaque: Vec::new(),
+            name: "",
             parameters: Vec::new(),
             first_call: None,
             first_move: None,
@@ -123,7 +126,7 @@ impl<'p> Inverter<'p> {
     }
 
     pub(super) fn refuse(&mut self, diagnostic: Diagnostic) {
-        self.refusals.add(diagnostic);
+        self.refusals.add(diagnostic, self.plan.calls_to(self.name));
     }
 
     /// Refuses what reads the outside: it may say something else when the inverse runs.
@@ -140,6 +143,7 @@ impl<'p> Inverter<'p> {
     /// The inverse of a sequence. What is called in it has been inverted.
     pub(super) fn sequence(&mut self, sequence: &'p Sequence<'p>) -> Sequence<'p> {
         self.facts = self.entries.get(sequence.name.value).cloned().unwrap_or_default();
+        self.name = sequence.name.value;
         (self.arm, self.tool) = (Arm::new(), None);
         let names = sequence.parameters.iter().map(|parameter| parameter.name.value);
         self.parameters = names.collect();
@@ -148,8 +152,9 @@ impl<'p> Inverter<'p> {
         let refused_before = self.refusals.len();
         let head = self.head(sequence);
         let body = self.statements(&sequence.body.statements[head.len..]);
-        let first = self.head_of_inverse(&head, sequence);
         let is_refused = self.refusals.len() > refused_before || self.arm.is_refused();
+        let first = self.head_of_inverse(&head, sequence, is_refused);
+        let is_refused = is_refused || self.refusals.len() > refused_before;
         let summary = match (&self.first_move, self.arm.spot()) {
             _ if is_refused => Summary::Refused,
             (Some(first), Some(last)) => Summary::Goes(first.clone(), last.clone()),
@@ -170,6 +175,7 @@ impl<'p> Inverter<'p> {
     /// Blocks change places in an inverse, and with them the variables that are seen in both.
     fn refuse_names_given_twice(&mut self, sequence: &'p Sequence<'p>) {
         let mut declared: BTreeMap<&str, Span> = BTreeMap::new();
+        let mut found = Vec::new();
         walk::each_in(&sequence.body, &mut |statement| {
             let (name, is_variable) = match &statement.kind {
                 StatementKind::Variable(variable) => (variable.name, true),
@@ -179,13 +185,14 @@ impl<'p> Inverter<'p> {
             let Some(first) = declared.insert(name.value, name.span) else { return };
             if is_variable {
                 let message = format!("`{}` is declared twice in this sequence", name.value);
-                self.refusals.add(
+                found.push(
                     refusal(name.span, &message, "the inverse could not tell them apart")
                         .with_label(first, "the first is here")
                         .with_help("give one of them another name"),
                 );
             }
         });
+        found.into_iter().for_each(|diagnostic| self.refuse(diagnostic));
     }
 
     /// The inverse of a block, at its place.

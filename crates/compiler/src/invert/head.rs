@@ -94,15 +94,19 @@ impl<'p> Inverter<'p> {
         }
     }
 
-    /// The head of the inverse, now that the end of the sequence is known.
+    /// The head of the inverse, now that the end of the sequence is known; `is_refused` if
+    /// something in it has no inverse.
     pub(super) fn head_of_inverse(
         &mut self,
         head: &Head<'p>,
         sequence: &'p Sequence<'p>,
+        is_refused: bool,
     ) -> Vec<Emitted<'p>> {
         let mut emitted = Vec::new();
         for statement in head.statements {
-            self.require_restored(statement);
+            if !is_refused {
+                self.require_restored(statement);
+            }
             let kind = match &statement.kind {
                 StatementKind::Move { .. } => self.first_move_of_inverse(sequence),
                 StatementKind::Primitive(Primitive::Set { bit, span, .. }) => {
@@ -128,6 +132,8 @@ impl<'p> Inverter<'p> {
             match (kind, &statement.kind) {
                 (Some(kind), _) => emitted.push(Emitted::new(kind, statement.span)),
                 (None, StatementKind::Move { .. }) => {}
+                // What is not known may follow from what has been refused.
+                (None, _) if is_refused => {}
                 (None, _) => self.refuse_open_end(statement.span),
             }
         }

@@ -31,6 +31,18 @@ use obverse_syntax::format::print;
 use obverse_syntax::span::Span;
 use program::Plan;
 
+/// The inverse of a sequence.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Inverse {
+    /// The formatted source text of a program.
+    pub text: String,
+    /// The name that the inverse has in it.
+    pub name: String,
+    /// Whether the program begins with it. Otherwise its main sequence is empty, since nobody but
+    /// who calls the inverse knows its arguments, or what the variables of the program are then.
+    pub is_begun_with: bool,
+}
+
 /// Why there is no inverse.
 #[derive(Clone, Debug, PartialEq)]
 pub enum NoInverse {
@@ -40,13 +52,13 @@ pub enum NoInverse {
     UnknownSequence(Option<String>),
 }
 
-/// The inverse of a sequence or action, as the formatted source text of a program. To invert it
-/// again gives a program that compiles to the code and tables of the sequence, with what it needs.
+/// The inverse of a sequence or action, as a program. To invert it again gives a program that
+/// compiles to the code and tables of the sequence, with what it needs.
 ///
 /// # Errors
 /// Diagnostics, if the program does not compile or the sequence has no inverse; and if there is no
 /// such sequence.
-pub fn invert(source_name: &str, source: &str, sequence: &str) -> Result<String, NoInverse> {
+pub fn invert(source_name: &str, source: &str, sequence: &str) -> Result<Inverse, NoInverse> {
     let compiled = compile(source_name, source);
     if compiled.module.is_none() {
         return Err(NoInverse::Diagnosed(compiled.diagnostics));
@@ -61,7 +73,7 @@ pub fn invert(source_name: &str, source: &str, sequence: &str) -> Result<String,
         return Err(NoInverse::UnknownSequence(meant.map(str::to_owned)));
     };
     let inverse = inverted(&parsed.program, sequence)?;
-    let found = compile(source_name, &inverse);
+    let found = compile(source_name, &inverse.text);
     match found.module {
         Some(_) => Ok(inverse),
         None => Err(NoInverse::Diagnosed(vec![does_not_compile(place, &found.diagnostics)])),
@@ -75,10 +87,11 @@ fn place_of(program: &Program<'_>, name: &str) -> Option<Span> {
     })
 }
 
-fn inverted(program: &Program<'_>, root: &str) -> Result<String, NoInverse> {
+fn inverted(program: &Program<'_>, root: &str) -> Result<Inverse, NoInverse> {
     let plan = Plan::of(program, root).map_err(NoInverse::Diagnosed)?;
-    let inverse = plan.inverse().map_err(NoInverse::Diagnosed)?;
-    Ok(print(&inverse))
+    let (inverse, is_begun_with) = plan.inverse().map_err(NoInverse::Diagnosed)?;
+    let name = program::inverse_name(root);
+    Ok(Inverse { text: print(&inverse), name, is_begun_with })
 }
 
 /// What is said where an inverse keeps all rules of inversion and yet is no program: it needs a

@@ -30,6 +30,8 @@ pub(super) struct Plan<'s> {
     globals: HashSet<&'s str>,
     /// What a call changes, by sequence.
     effects: HashMap<&'s str, Effect<'s>>,
+    /// A call that leads to each sequence but the root: in which sequence it stands, and where.
+    call_sites: HashMap<&'s str, (&'s str, Span)>,
     /// Whether the program begins with the sequence, and its inverse with the inverse.
     is_begun_with: bool,
     /// The names of inverses, by the names of what they are the inverses of.
@@ -63,6 +65,7 @@ impl<'s> Plan<'s> {
             items: HashSet::new(),
             globals: HashSet::new(),
             effects: HashMap::new(),
+            call_sites: HashMap::new(),
             is_begun_with: false,
             inverse_names: HashMap::new(),
         };
@@ -86,6 +89,11 @@ impl<'s> Plan<'s> {
                 let help = "write the repetition as a loop";
                 return Err(vec![refusal(again, message, why).with_help(help)]);
             }
+            for sequence in order.iter().rev() {
+                for (callee, span) in inverted_calls(sequence) {
+                    plan.call_sites.entry(callee).or_insert((sequence.name.value, span));
+                }
+            }
             plan.order = order;
             plan.is_begun_with = plan.begins_with_root();
         }
@@ -108,6 +116,19 @@ impl<'s> Plan<'s> {
     /// The name of an I/O operation as it is declared.
     pub(super) fn io_name(&self, name: &str) -> Option<&'s str> {
         self.io.get(name).map(|io| io.name.value)
+    }
+
+    /// The calls that lead from the root to a sequence, the innermost first.
+    pub(super) fn calls_to(&self, name: &'s str) -> impl Iterator<Item = Span> {
+        let mut inner = name;
+        std::iter::from_fn(move || {
+            if inner == self.root {
+                return None;
+            }
+            let (caller, span) = self.call_sites.get(inner)?;
+            inner = caller;
+            Some(*span)
+        })
     }
 
     /// Every I/O operation.
@@ -295,8 +316,8 @@ impl<'s> Plan<'s> {
         }
     }
 
-    /// The inverse as a program.
-    pub(super) fn inverse(&self) -> Result<Program<'_>, Vec<Diagnostic>> {
+    /// The inverse as a program, and whether that begins with it.
+    pub(super) fn inverse(&self) -> Result<(Program<'_>, bool), Vec<Diagnostic>> {
         let mut inverter = Inverter::new(self, self.entries());
         let mut inverses: HashMap<&str, Sequence<'_>> = HashMap::new();
         for sequence in &self.order {
@@ -328,8 +349,8 @@ impl<'s> Plan<'s> {
         }
         self.refuse_two_meanings(&items)?;
         let mut program = Program { items: needed(items) };
-        self.add_main(&mut program);
-        Ok(program)
+        let is_begun_with = self.add_main(&mut program);
+        Ok((program, is_begun_with))
     }
 
     /// What stands in blocks that are kept whole calls sequences of the program as they are: none
@@ -372,22 +393,20 @@ impl<'s> Plan<'s> {
     /// A main sequence, if the program would not begin with the inverse anyway, or should not:
     /// where the program does not begin with the sequence, nobody may take it for what it begins
     /// with.
-    fn add_main<'p>(&'p self, program: &mut Program<'p>) {
-        let Some(root) = self.sequence(self.root) else { return };
+    fn add_main<'p>(&'p self, program: &mut Program<'p>) -> bool {
+        let Some(root) = self.sequence(self.root) else { return false };
         let name = self.inverse_name(root.name);
         let main = main_of(program);
         let is_main = |main: &Sequence<'_>| main.name.value == name.value && self.is_begun_with;
         if main.is_some_and(|main| is_main(main) || main.name.value == "main") {
-            return;
+            return main.is_some_and(is_main);
         }
         let span = root.name.span;
         let call = StatementKind::Call { name, arguments: Vec::new() };
         let is_changing = self.assigns(self.root) && !self.is_begun_with;
-        let statements = match root.parameters.is_empty() && !is_changing {
-            true => vec![Statement { kind: call, span }],
-            // Nobody knows the arguments, or with which values the variables begin.
-            false => Vec::new(),
-        };
+        // Nobody knows the arguments, or with which values the variables begin.
+        let is_called = root.parameters.is_empty() && !is_changing;
+        let statements = if is_called { vec![Statement { kind: call, span }] } else { Vec::new() };
         program.items.push(Item::Sequence(Sequence {
             name: Spanned::new("main", span),
             is_action: false,
@@ -395,6 +414,7 @@ impl<'s> Plan<'s> {
             body: Block { statements, span },
             span,
         }));
+        is_called
     }
 }
 
@@ -439,7 +459,7 @@ fn all_calls<'s>(sequence: &'s Sequence<'s>) -> Vec<(&'s str, Span)> {
 }
 
 /// The inverse of `pick` is `pick_inverse`, and that of `pick_inverse` is `pick`.
-fn inverse_name(name: &str) -> String {
+pub(super) fn inverse_name(name: &str) -> String {
     match name.strip_suffix(SUFFIX).filter(|rest| !rest.is_empty()) {
         Some(rest) => rest.to_owned(),
         None => format!("{name}{SUFFIX}"),

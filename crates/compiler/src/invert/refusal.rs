@@ -12,15 +12,21 @@ pub(super) fn refusal(span: Span, message: &str, why: &str) -> Diagnostic {
     Diagnostic::error(Code::NotInvertible, span, message, why)
 }
 
+/// How many calls that lead to a refusal are shown.
+const MAX_CALLS: usize = 4;
+
 /// All refusals, each place once.
 #[derive(Debug, Default)]
 pub(super) struct Refusals(Vec<Diagnostic>);
 
 impl Refusals {
-    pub(super) fn add(&mut self, diagnostic: Diagnostic) {
+    /// Adds one that these calls lead to, the innermost first.
+    pub(super) fn add(&mut self, diagnostic: Diagnostic, calls: impl Iterator<Item = Span>) {
         let is_known = self.0.iter().any(|known| known.primary.span == diagnostic.primary.span);
         if !is_known && self.0.len() < MAX_REFUSALS {
-            self.0.push(diagnostic);
+            let labelled =
+                |diagnostic: Diagnostic, call| diagnostic.with_label(call, "called here");
+            self.0.push(calls.take(MAX_CALLS).fold(diagnostic, labelled));
         }
     }
 

@@ -74,7 +74,7 @@ impl<'p> Inverter<'p> {
                              second with a move to the place before the blocks",
                         ),
                 );
-                self.arm = Arm::lost("where these blocks end has no name", motion);
+                self.arm = Arm::refused();
             }
         }
     }

@@ -9,6 +9,7 @@ mod expressions;
 mod flow;
 mod generated;
 mod guarded;
+mod invert;
 mod limits;
 mod module;
 mod reversal;
