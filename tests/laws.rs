@@ -63,7 +63,7 @@ laws! {
         turns >= 12
         round_trips >= 100;
     format_laws: formats >= 100 cut_off >= 100;
-    invert_laws: inverts_twice >= 45 inverse_goes_back >= 45 inverts_anything_twice >= 30;
+    invert_laws: inverts_twice >= 45 inverse_goes_back >= 45 inverts_anything_twice >= 20;
     laws: compiles >= 100 agrees_forward >= 95 agrees_backward >= 75;
 }
 

@@ -427,9 +427,7 @@ fn main_of<'p, 's>(program: &'p Program<'s>) -> Option<&'p Sequence<'s>> {
         })
     };
     let begins = |sequence: &&Sequence<'_>| !sequence.is_action && sequence.parameters.is_empty();
-    sequences()
-        .find(|one| one.name.value == "main")
-        .or_else(|| sequences().filter(begins).next_back())
+    sequences().find(|one| one.name.value == "main").or_else(|| sequences().rfind(begins))
 }
 
 /// What a sequence calls that is inverted with it: not what stands in blocks that are kept whole.

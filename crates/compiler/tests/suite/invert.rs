@@ -70,7 +70,7 @@ fn a_path_is_gone_backwards() {
     becomes(
         &["move to a", "move to b reversible always", "move to c reversible always"],
         &["move to c", "move to b reversible always", "move to a reversible always"],
-    )
+    );
 }
 
 #[test]

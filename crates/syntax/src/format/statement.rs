@@ -65,6 +65,33 @@ impl<'s> Writer<'s> {
                 });
                 self.expression(value);
             }
+            StatementKind::If { .. }
+            | StatementKind::While { .. }
+            | StatementKind::Repeat { .. }
+            | StatementKind::For { .. }
+            | StatementKind::Loop(_) => self.control(&statement.kind),
+            StatementKind::Break => self.word("break"),
+            StatementKind::Return => self.word("return"),
+            StatementKind::Speed { speed, block } => {
+                self.speed(speed.value);
+                self.scope(block.as_ref());
+            }
+            StatementKind::Tool { name, block } => {
+                self.named("tool", name.value);
+                self.scope(block.as_ref());
+            }
+            StatementKind::Checkpoint(name) => self.named("checkpoint", name.value),
+            StatementKind::Barrier(_)
+            | StatementKind::Irreversible { .. }
+            | StatementKind::SkipInReverse(_)
+            | StatementKind::ReplaceInReverse { .. } => self.reversal(&statement.kind),
+            StatementKind::Throw(name) => self.named("throw", name.value),
+        }
+    }
+
+    /// A branch or a loop.
+    fn control(&mut self, kind: &StatementKind<'s>) {
+        match kind {
             StatementKind::If { condition, then, otherwise, ending_when } => {
                 self.branch(condition, then, otherwise.as_ref());
                 self.assertion("ending", ending_when.as_ref());
@@ -96,17 +123,13 @@ impl<'s> Writer<'s> {
                 self.word("loop");
                 self.block(body);
             }
-            StatementKind::Break => self.word("break"),
-            StatementKind::Return => self.word("return"),
-            StatementKind::Speed { speed, block } => {
-                self.speed(speed.value);
-                self.scope(block.as_ref());
-            }
-            StatementKind::Tool { name, block } => {
-                self.named("tool", name.value);
-                self.scope(block.as_ref());
-            }
-            StatementKind::Checkpoint(name) => self.named("checkpoint", name.value),
+            _ => {}
+        }
+    }
+
+    /// Words about reversal.
+    fn reversal(&mut self, kind: &StatementKind<'s>) {
+        match kind {
             StatementKind::Barrier(reason) => {
                 self.word("barrier");
                 self.quoted(reason.value);
@@ -127,7 +150,7 @@ impl<'s> Writer<'s> {
                 self.words(&["in", "reverse"]);
                 self.block(replacement);
             }
-            StatementKind::Throw(name) => self.named("throw", name.value),
+            _ => {}
         }
     }
 
