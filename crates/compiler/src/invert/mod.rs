@@ -54,8 +54,8 @@ pub enum NoInverse {
     UnknownSequence(Option<String>),
 }
 
-/// The inverse of a sequence or action, as a program of one file. To invert it again gives a program
-/// that compiles to the code and tables of the sequence, with what it needs.
+/// The inverse of a sequence or action, as a program of one file. To invert it again gives a
+/// program that compiles to the code and tables of the sequence, with what it needs.
 ///
 /// # Errors
 /// Diagnostics, if the program does not compile or the sequence has no inverse; and if there is no
