@@ -181,6 +181,23 @@ impl Allows {
     }
 }
 
+/// Leave them out of a program, where they are of no use: what they say is of its own text.
+pub(crate) fn leave_out(program: &mut Program<'_>) {
+    program.items.retain(|item| !matches!(item, Item::Allow(_)));
+    for item in &mut program.items {
+        if let Item::Sequence(sequence) = item {
+            leave_out_of(&mut sequence.body);
+        }
+    }
+}
+
+fn leave_out_of(block: &mut Block<'_>) {
+    block.statements.retain(|statement| statement.allow().is_none());
+    for statement in &mut block.statements {
+        statement.blocks_mut().into_iter().for_each(leave_out_of);
+    }
+}
+
 fn item_end(item: &Item<'_>) -> u32 {
     match item {
         Item::Cell(path) | Item::Import(path) => path.span.end,

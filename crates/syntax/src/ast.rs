@@ -545,12 +545,14 @@ pub enum StatementKind<'s> {
         /// The body.
         body: Block<'s>,
     },
-    /// `for i from 0 to 9 { … }`, both ends included.
+    /// `for i from 0 to 9 { … }`, `for i from 9 down to 0 { … }`, both ends included.
     For {
         /// The counter, which the body cannot assign.
         name: Name<'s>,
         /// The first value.
         first: Expression<'s>,
+        /// Whether it counts down.
+        down: bool,
         /// The last value.
         last: Expression<'s>,
         /// The body.
@@ -614,32 +616,22 @@ pub enum StatementKind<'s> {
     Allow(Allow<'s>),
 }
 
-impl<'s> Statement<'s> {
-    /// What it allows, if that is all that it does.
-    #[must_use]
-    pub fn allow(&self) -> Option<&Allow<'s>> {
-        match &self.kind {
-            StatementKind::Allow(allow) => Some(allow),
-            _ => None,
-        }
-    }
-
-    /// The blocks in it, in the order of the text.
-    #[must_use]
-    pub fn blocks(&self) -> Vec<&Block<'s>> {
-        match &self.kind {
+/// The blocks of a kind of statement, to be read or to be changed.
+macro_rules! blocks_of {
+    ($kind:expr, $iter:ident) => {
+        match $kind {
             StatementKind::If { then, otherwise, .. } => {
-                std::iter::once(then).chain(otherwise).collect()
+                std::iter::once(then).chain(otherwise.$iter()).collect()
             }
-            StatementKind::WaitUntil { otherwise, .. } => otherwise.iter().collect(),
+            StatementKind::WaitUntil { otherwise, .. } => otherwise.$iter().collect(),
             StatementKind::While { body, .. }
             | StatementKind::Repeat { body, .. }
             | StatementKind::For { body, .. }
             | StatementKind::Loop(body) => vec![body],
             StatementKind::Speed { block, .. } | StatementKind::Tool { block, .. } => {
-                block.iter().collect()
+                block.$iter().collect()
             }
-            StatementKind::Fork(branches) => branches.iter().collect(),
+            StatementKind::Fork(branches) => branches.$iter().collect(),
             StatementKind::Irreversible { block, .. }
             | StatementKind::SkipInReverse(block)
             | StatementKind::KeepInReverse(block)
@@ -663,6 +655,29 @@ impl<'s> Statement<'s> {
             | StatementKind::Throw(_)
             | StatementKind::Allow(_) => Vec::new(),
         }
+    };
+}
+
+impl<'s> Statement<'s> {
+    /// What it allows, if that is all that it does.
+    #[must_use]
+    pub fn allow(&self) -> Option<&Allow<'s>> {
+        match &self.kind {
+            StatementKind::Allow(allow) => Some(allow),
+            _ => None,
+        }
+    }
+
+    /// The blocks in it, in the order of the text.
+    #[must_use]
+    pub fn blocks(&self) -> Vec<&Block<'s>> {
+        blocks_of!(&self.kind, iter)
+    }
+
+    /// The same, to be changed.
+    #[must_use]
+    pub fn blocks_mut(&mut self) -> Vec<&mut Block<'s>> {
+        blocks_of!(&mut self.kind, iter_mut)
     }
 }
 

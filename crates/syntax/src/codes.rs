@@ -2,9 +2,9 @@
 //!
 //! A code is stable: a row may be reworded, but its code is never given another meaning nor used
 //! again. `E00xx` is text and grammar, `E01xx` names, `E02xx` types and units, `E03xx` statements,
-//! structure and errors, `E04xx` reversal, `E05xx` files, `E06xx` forks; `W00xx` warnings, `W04xx`
-//! those about reversal, `W05xx` about files, `W06xx` about forks. It knows nothing of how a
-//! mistake is found or shown.
+//! structure and errors, `E04xx` reversal, `E05xx` files, `E06xx` forks, `E07xx` inversion; `W00xx`
+//! warnings, `W04xx` those about reversal, `W05xx` about files, `W06xx` about forks. It knows
+//! nothing of how a mistake is found or shown.
 
 mod errors;
 mod warnings;

@@ -11,6 +11,7 @@ pub mod codes;
 pub mod diagnostic;
 mod expectation;
 mod foreign;
+pub mod format;
 mod habits;
 mod imports;
 pub mod index;

@@ -111,7 +111,7 @@ pub(crate) fn bad_quantity<'s>(
 pub(crate) fn step(span: Span) -> Diagnostic {
     let message = "a loop that counts goes by one";
     Diagnostic::error(Code::ForeignLoop, span, message, "no step can be given")
-        .with_help("compute in the loop: `var n = i * 2`, or write `while`")
+        .with_help("compute in the loop: `var n = i * 2`; it counts down by `from 9 down to 0`")
 }
 
 /// A word stands where a unit should; `others` are words that could have been meant as well.
@@ -128,8 +128,8 @@ pub(crate) fn unknown_unit(word: &str, span: Span, others: &[&str]) -> Diagnosti
     }
 }
 
-/// Other words for the units.
-const UNIT_WORDS: [(&[&str], &str); 10] = [
+/// Other words for the units, and one that elsewhere follows the first number of a loop.
+const UNIT_WORDS: [(&[&str], &str); 11] = [
     (&["millimeter", "millimeters", "millimetre", "millimetres"], "mm"),
     (&["centimeter", "centimeters", "centimetre", "centimetres"], "cm"),
     (&["meter", "meters", "metre", "metres"], "m"),
@@ -140,10 +140,11 @@ const UNIT_WORDS: [(&[&str], &str); 10] = [
     (&["sec", "secs", "second", "seconds"], "s"),
     (&["mins", "minute", "minutes"], "min"),
     (&["newton", "newtons"], "N"),
+    (&["downto"], "down to"),
 ];
 
 /// The number and the word of `20 mm`.
-fn split_quantity(text: &str) -> (&str, &str) {
+pub(crate) fn split_quantity(text: &str) -> (&str, &str) {
     let bytes = text.as_bytes();
     // `e` is of the number where digits or a sign and digits follow: `1e5 mm`, not `3 eel`.
     let is_number = |index: usize| match bytes[index] {

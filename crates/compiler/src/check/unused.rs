@@ -25,7 +25,10 @@ impl Checker<'_> {
             // the program's to leave out; and what a file offers serves other programs as well.
             let is_meant = matches!(
                 symbol.meaning,
-                Meaning::Counter(_) | Meaning::Output(_) | Meaning::Input(_)
+                Meaning::Counter(_)
+                    | Meaning::CountDown(_)
+                    | Meaning::Output(_)
+                    | Meaning::Input(_)
             );
             let is_offered = symbol.meaning.is_declared() && !self.is_own(symbol.name.span);
             if symbol.is_used || is_main || is_meant || is_offered {
@@ -64,17 +67,25 @@ impl Checker<'_> {
             .add(warning(Code::ConstantCondition, condition.span, message, how).with_help(help));
     }
 
-    /// Warn of a loop that counts up to less than what it begins with.
-    pub(super) fn warn_of_empty_count(&mut self, first: &Expression, last: &Expression) {
+    /// Warn of a loop that counts up to less than what it begins with, or down to more.
+    pub(super) fn warn_of_empty_count(
+        &mut self,
+        first: &Expression,
+        down: bool,
+        last: &Expression,
+    ) {
         let (ExpressionKind::Int(from), ExpressionKind::Int(to)) = (&first.kind, &last.kind) else {
             return;
         };
-        if from <= to || self.frame.is_dead {
+        let (way, at, is_empty) = match down {
+            false => ("up", "less than the first", from > to),
+            true => ("down", "more than the first", from < to),
+        };
+        if !is_empty || self.frame.is_dead {
             return;
         }
-        let message = format!("this loop is never run: it counts up from {from} to {to}");
-        let mut diagnostic =
-            warning(Code::ConstantCondition, last.span, message, "less than the first");
+        let message = format!("this loop is never run: it counts {way} from {from} to {to}");
+        let mut diagnostic = warning(Code::ConstantCondition, last.span, message, at);
         if first.span != last.span {
             diagnostic = diagnostic.with_label(first.span, "the first");
         }

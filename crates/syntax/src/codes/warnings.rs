@@ -61,7 +61,8 @@ macro_rules! warnings {
     ConstantCondition "W0012" "a condition that is always the same"
         why "The condition reads nothing that could change, so that one of the ways is never \
              taken: a variable may be meant, or a reading. A loop for ever is written `loop { .. \
-             }`. A loop that counts upwards does nothing where its last value is below its first."
+             }`. A loop that counts up does nothing where its last value is below its first, nor \
+             does one that counts down where it is above."
         wrong "sequence main { while 1 > 2 { wait 1 s } }"
         right "sequence main { while input 3 { wait 1 s } }"
 
