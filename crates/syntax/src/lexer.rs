@@ -173,8 +173,11 @@ impl<'s, 'k> Lexer<'s, 'k> {
         self.clauses = match (token, self.clauses) {
             (Token::OpenBrace, Some((of, open))) => Some((of, open + 1)),
             (Token::OpenBrace, None) => match self.before_previous {
+                // What is called `error` may be counted: `repeat error times {`.
                 of @ (Token::Error | Token::Move | Token::Item | Token::Io)
-                    if self.previous.is_word() && !self.previous.is_reserved() =>
+                    if self.previous.is_word()
+                        && !self.previous.is_reserved()
+                        && self.previous != Token::Times =>
                 {
                     Some((of, 1))
                 }

@@ -5,7 +5,7 @@ use obverse_compiler::{NoInverse, invert};
 use obverse_syntax::codes::Code;
 
 fn is_of_inversion(code: Code) -> bool {
-    code.as_str().starts_with("E05")
+    code.as_str().starts_with("E07")
 }
 
 fn codes_of_the_compiler() -> impl Iterator<Item = Code> {

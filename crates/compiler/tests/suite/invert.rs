@@ -182,3 +182,13 @@ fn an_unknown_sequence_is_perhaps_another() {
     let found = invert("work.obv", "sequence main { mov }", "main");
     assert!(matches!(found, Err(NoInverse::Diagnosed(found)) if found[0].code.as_str() == "E0010"));
 }
+
+#[test]
+fn what_is_allowed_is_said_of_the_sequence_alone() {
+    let plain =
+        ["move to a", "toggle 2", "sleep 10 ms", "repeat 2 times { toggle 3 }", "move to b"];
+    let allowing = plain.map(|line| format!("allow W0003 \"why\"\n{line}"));
+    let nested = allowing.join("\n").replace("{ toggle", "{ allow W0003 \"why\" toggle");
+    assert_eq!(inverse(&nested).err(), None);
+    assert_eq!(inverse(&nested), inverse(&plain.join("\n")));
+}

@@ -183,6 +183,7 @@ fn statements_are_told_apart() {
         ("while a { break }", "while:a{break}"),
         ("while a entered when b { }", "while:a:b{}"),
         ("repeat 3 times { break }", "repeat:3{break}"),
+        ("repeat error times { if a { } }", "repeat:error{if:a{}}"),
         ("for i from 0 to n - 1 { break }", "for:i:0:(n Subtract 1){break}"),
         ("for i from n down to down { break }", "for:i:n:down:down{break}"),
         ("loop { break return }", "loop{break return}"),
