@@ -6,6 +6,7 @@
 pub mod altered;
 pub mod code;
 pub mod files;
+pub mod fork_code;
 pub mod hostile;
 pub mod laws;
 pub mod ledger;
