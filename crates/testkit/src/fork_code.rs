@@ -1,5 +1,5 @@
-//! Random modules of little but forks, calls and what cannot be taken back: branches that call, that
-//! fork again, that leave, that are in a block, and that share a flag which says where to go.
+//! Random modules of little but forks, calls and what cannot be taken back: branches that call,
+//! that fork again, that leave, that are in a block, and that share a flag which says where to go.
 //!
 //! Every generated module verifies and, on a [`Ledger`](crate::Ledger), ends: there are no loops,
 //! and functions call later ones alone.
