@@ -1,8 +1,8 @@
 //! The laws of the machine over generated modules: there and back, runs are steps, parsimony, write
 //! ahead, barrier, blocks, turns, round trips; those of the formatter and of inversion; those of
 //! compiler and machine together over generated programs, against the reference interpreter; and
-//! that of reach, over both. `LAW_RUNS` sets how many programs each law sees; a failure prints the
-//! number of the program, and `LAW_SEED` runs that one alone.
+//! that of reach, over both and over modules of forks. `LAW_RUNS` sets how many programs each law
+//! sees; a failure prints the number of the program, and `LAW_SEED` runs that one alone.
 
 use arbitrary::{Result, Unstructured};
 use obverse_testkit::{
@@ -99,6 +99,11 @@ fn reach_of_modules() {
 #[test]
 fn reach_of_programs() {
     holds_of(REACH_RUNS, "reach_of_programs", reach_laws::reach_of_programs, 90);
+}
+
+#[test]
+fn reach_of_forks() {
+    holds_of(REACH_RUNS, "reach_of_forks", reach_laws::reach_of_forks, 25);
 }
 
 /// What is said of points is met, by and by: the verdict is no larger than it needs to be, but for

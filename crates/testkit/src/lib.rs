@@ -6,6 +6,7 @@
 pub mod altered;
 pub mod code;
 pub mod files;
+pub mod fork_code;
 pub mod format_laws;
 pub mod front_laws;
 pub mod hostile;
