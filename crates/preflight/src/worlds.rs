@@ -6,10 +6,10 @@
 use crate::command::{Aim, Command, Guard};
 use crate::reason::Reason;
 use crate::verdict::{Verdict, of_fault};
-use obverse_geometry::JointConfiguration;
+use obverse_geometry::{JOINT_COUNT, JointConfiguration};
 use obverse_sim::{Cell, Plan, Sim};
-use obverse_workcell::{Arm, Fault, Gripper, Motion, MotionEnd, MotionReport, Path};
-use std::collections::HashMap;
+use obverse_workcell::{Arm, Fault, Goal, Gripper, Motion, MotionEnd, MotionReport, Path};
+use std::collections::{HashMap, HashSet};
 use std::rc::Rc;
 
 /// The most motions that are looked at.
@@ -18,6 +18,11 @@ const MAX_QUESTIONS: usize = 20_000;
 const MAX_LOOKS: usize = 2_000_000;
 /// The most workcells that are kept, times the items in each and a few for the rest.
 const MAX_KEPT: usize = 400_000;
+
+/// In a run a contact may press so many times as hard as in the check where it stopped the arm.
+const FELT_MARGIN: f64 = 4.0;
+/// What meets something after this part of its way to a place of contact may get there in a run.
+const FELT_FROM: f64 = 0.9;
 
 /// A workcell, among those of one check.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
@@ -61,6 +66,8 @@ pub(crate) struct Worlds {
     list: Vec<World>,
     by_numbers: HashMap<Vec<u64>, WorldId>,
     answers: HashMap<(WorldId, Vec<u64>), Answer>,
+    /// Joints where contact stopped the arm, or counted from there.
+    felt: HashSet<[u64; JOINT_COUNT]>,
     gripper_output: Option<u16>,
     max_worlds: usize,
     max_questions: usize,
@@ -88,6 +95,7 @@ impl Worlds {
             list: Vec::new(),
             by_numbers: HashMap::new(),
             answers: HashMap::new(),
+            felt: HashSet::new(),
             gripper_output,
             max_worlds,
             max_questions,
@@ -250,12 +258,22 @@ impl Worlds {
         let may_end_before = matches!(guard, Guard::Ends(_));
         let stand = Stand::OnLineFrom(world.plan.workcell().joints());
         let otherwise = may_end_before.then(|| self.keep(World { stand, ..world.clone() }));
-        let (outcome, plan) = world.plan.after(motion);
+        let Some((outcome, plan)) = world.plan.after(motion) else {
+            let after = match world.plan.end_of(motion) {
+                Ok(end) if guard == Guard::None => self.placed(world, end),
+                _ => self.lost(world),
+            };
+            return self.unclear(Reason::LongContact, after);
+        };
+        let presses = self.presses_where_felt(motion, guard, &plan, &outcome);
         match outcome.and_then(|report| stopped_is_fault(report, guard)) {
             Ok(report) => {
                 let after = self.keep(World { plan, ..world.clone() });
-                let is_sure = world.knows_items;
-                let reason = if is_sure { Reason::Fine } else { Reason::HeldNotKnown };
+                let reason = match (world.knows_items, presses) {
+                    (false, _) => Reason::HeldNotKnown,
+                    (true, true) => Reason::StopNotKnown,
+                    (true, false) => Reason::Fine,
+                };
                 let verdict = Rc::new(Verdict::new(reason));
                 Answer { verdict, after, otherwise, report: Some(report) }
             }
@@ -269,8 +287,45 @@ impl Worlds {
                     (None, Ok(end)) => self.placed(world, end),
                     (None, Err(_)) => self.lost(world),
                 };
-                self.said(of_fault(&fault, &world.plan, motion), after)
+                match presses {
+                    true => self.unclear(Reason::StopNotKnown, after),
+                    false => self.said(of_fault(&fault, &world.plan, motion), after),
+                }
             }
+        }
+    }
+
+    /// Whether a motion ends where contact stopped the arm, so hard pressed there that it may be
+    /// too hard in a run: when the force is read decides where exactly the arm was stopped.
+    fn presses_where_felt(
+        &mut self,
+        motion: &Motion,
+        guard: Guard,
+        plan: &Plan,
+        outcome: &Result<MotionReport, Fault>,
+    ) -> bool {
+        let goal_is_felt = match &motion.goal {
+            Goal::Joints(to) => self.felt.contains(&to.bits()),
+            Goal::Pose(_) => false,
+            Goal::Displaced { from, .. } | Goal::Offset { from, .. } => {
+                self.felt.contains(&from.bits())
+            }
+        };
+        match outcome {
+            Ok(report) => {
+                let is_stopped = report.end == MotionEnd::StoppedByForce;
+                if is_stopped || goal_is_felt {
+                    self.felt.insert(plan.workcell().joints().bits());
+                }
+                let mut most_n = self.cell().contact.stop_force_n;
+                if let Guard::Faults(Some(limit_n)) = guard {
+                    most_n = most_n.min(limit_n);
+                }
+                let is_safe = plan.contact_n() * FELT_MARGIN <= most_n;
+                goal_is_felt && !is_safe && !matches!(guard, Guard::Ends(_))
+            }
+            Err(Fault::Collision { fraction, .. }) => goal_is_felt && *fraction >= FELT_FROM,
+            Err(_) => false,
         }
     }
 
