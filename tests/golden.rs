@@ -11,6 +11,8 @@
 //! reach/NAME.obv     what `obverse reach` draws of it: NAME.txt; likewise of NAME.obvasm
 //! moves/NAME.obv     what `obverse check` says of its moves, in the workcell NAME.toml: NAME.txt
 //! dry/NAME.obv       what `obverse run --dry` tells: NAME.txt
+//! invert/NAME.obv    the inverse of its `main`, or why there is none, at the lines that say so:
+//!                    NAME.txt
 //! asm/NAME.obvasm    what is wrong with assembly text, or with the module that it says: NAME.txt
 //! ```
 //!
@@ -19,9 +21,10 @@
 
 use libtest_mimic::{Arguments, Failed, Trial};
 use obverse_bytecode::{Module, assemble, disassemble, verify};
-use obverse_compiler::{Compiled, MAX_IMPORT_DEPTH, compile_files};
+use obverse_compiler::{MAX_IMPORT_DEPTH, NoInverse, compile_files, invert_files};
 use obverse_syntax::codes::Code;
 use obverse_syntax::diagnostic::Diagnostic;
+use obverse_syntax::sources::Sources;
 use obverse_testkit::files::Folder;
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
@@ -58,7 +61,7 @@ fn walk() -> (Vec<Golden>, BTreeSet<String>) {
         goldens.push(Golden { source: source.to_owned(), render, kept });
     };
     let mut strays = BTreeSet::new();
-    for folder in ["diag", "compile", "run", "back", "reach", "moves", "dry", "asm"] {
+    for folder in ["diag", "compile", "run", "back", "reach", "moves", "dry", "invert", "asm"] {
         for name in names_in(folder) {
             let file = format!("{folder}/{name}");
             match (folder, name.rsplit_once('.')) {
@@ -75,6 +78,9 @@ fn walk() -> (Vec<Golden>, BTreeSet<String>) {
                 }
                 ("moves", Some((stem, "obv"))) => add(&file, moves, format!("moves/{stem}.txt")),
                 ("dry", Some((stem, "obv"))) => add(&file, dry, format!("dry/{stem}.txt")),
+                ("invert", Some((stem, "obv"))) => {
+                    add(&file, inverted, format!("invert/{stem}.txt"));
+                }
                 ("asm", Some((stem, "obvasm"))) => add(&file, refused, format!("asm/{stem}.txt")),
                 // Workcells.
                 (_, Some((_, "toml"))) => {}
@@ -184,7 +190,7 @@ fn compiled(file: &str) -> Result<String, Failed> {
     let source = text(file)?;
     let name = file.trim_start_matches("compile/");
     let compiled = obverse_compiler::compile(name, &source);
-    let found: Vec<_> = placed(&compiled).into_iter().collect();
+    let found: Vec<_> = placed(&compiled.sources, &compiled.diagnostics).into_iter().collect();
     let (Some(module), []) = (compiled.module, &found[..]) else {
         return Err(format!("it does not compile without a word: {found:?}").into());
     };
@@ -219,7 +225,7 @@ fn diagnosed(file: &str) -> Result<String, Failed> {
             let said = (0..sources.len())
                 .flat_map(|file| said(sources.name(file), sources.text(file)))
                 .collect();
-            (placed(&compiled), said)
+            (placed(&compiled.sources, &compiled.diagnostics), said)
         }
         Err(diagnostic) => {
             let found = Placed::from([(name.to_owned(), 1, diagnostic.code.to_string())]);
@@ -236,15 +242,31 @@ fn diagnosed(file: &str) -> Result<String, Failed> {
     printed(&["check", file])
 }
 
+/// What `obverse invert` says, if it refuses what the source says that it does.
+fn inverted(file: &str) -> Result<String, Failed> {
+    let source = text(file)?;
+    let said = said(file, &source);
+    let (sources, inverse) = invert_files(file, &source, "main", &mut Folder::default());
+    let found = match inverse {
+        Ok(_) => Placed::new(),
+        Err(NoInverse::Diagnosed(diagnostics)) => placed(&sources, &diagnostics),
+        Err(NoInverse::UnknownSequence(_)) => return Err("it has no `main`".into()),
+    };
+    if found != said {
+        return Err(format!("it says that it has {said:?}, and it has {found:?}").into());
+    }
+    printed(&["invert", file, "main"])
+}
+
 /// Files, lines and codes of diagnostics.
 type Placed = BTreeSet<(String, usize, String)>;
 
-fn placed(compiled: &Compiled) -> Placed {
+fn placed(sources: &Sources, diagnostics: &[Diagnostic]) -> Placed {
     let place = |one: &Diagnostic| {
-        let (name, position) = compiled.sources.position(one.primary.span);
+        let (name, position) = sources.position(one.primary.span);
         (name.to_owned(), position.line as usize, one.code.to_string())
     };
-    compiled.diagnostics.iter().map(place).collect()
+    diagnostics.iter().map(place).collect()
 }
 
 /// What a file says of its own diagnostics.
@@ -283,6 +305,8 @@ fn every_diagnostic_is_shown() -> Result<(), Failed> {
         }
         shown.extend(said.into_iter().map(|(_, _, code)| code));
     }
+    let refused = said("refused.obv", &text("invert/refused.obv")?);
+    shown.extend(refused.into_iter().map(|(_, _, code)| code));
     let codes: BTreeSet<String> = Code::ALL.iter().map(ToString::to_string).collect();
     let missing: Vec<_> = codes.difference(&shown).collect();
     let unknown: Vec<_> = shown.difference(&codes).collect();

@@ -1,11 +1,13 @@
 //! The laws of the machine over generated modules: there and back, runs are steps, parsimony, write
-//! ahead, barrier, blocks, turns, round trips; those of compiler and machine together over
-//! generated programs, against the reference interpreter; and that of reach, over both. `LAW_RUNS`
-//! sets how many programs each law sees; a failure prints the number of the program, and `LAW_SEED`
-//! runs that one alone.
+//! ahead, barrier, blocks, turns, round trips; those of the formatter and of inversion; those of
+//! compiler and machine together over generated programs, against the reference interpreter; and
+//! that of reach, over both. `LAW_RUNS` sets how many programs each law sees; a failure prints the
+//! number of the program, and `LAW_SEED` runs that one alone.
 
 use arbitrary::{Result, Unstructured};
-use obverse_testkit::{files, laws, machine_laws, preflight_laws, reach_laws, word_laws};
+use obverse_testkit::{
+    files, format_laws, invert_laws, laws, machine_laws, preflight_laws, reach_laws, word_laws,
+};
 use std::collections::BTreeSet;
 
 /// How many modules each law sees.
@@ -71,6 +73,8 @@ laws! {
         turns >= 12
         round_trips >= 100;
     preflight_laws: foretells >= 60 foretells_of_modules >= 10;
+    format_laws: formats >= 100 cut_off >= 100;
+    invert_laws: inverts_twice >= 45 inverse_goes_back >= 45 inverts_anything_twice >= 20;
     laws: compiles >= 100 agrees_forward >= 95 agrees_backward >= 75;
     files: files_are_one_program >= 60;
     word_laws:

@@ -32,7 +32,8 @@ Exit codes:
   0  done; for `run`, the program ended with no error pending; for `back`, the run went back
      as far as the program lets it; for `check`, no move is found to fail
   1  the run ended otherwise: an error pending, a fault of the workcell, a trap, the limit;
-     for `check`, a move fails, or the check of the moves could not be done as a whole
+     for `check`, a move fails, or the check of the moves could not be done as a whole;
+     for `fmt --check`, a file would change; for `invert`, the sequence has no inverse
   2  the input is wrong (command line, source, module, tape, workcell file), and nothing was run;
      or the output cannot be written. With `--json` the last line on standard output is then
      a summary with the outcome `refused`, and the messages";
@@ -41,6 +42,10 @@ Exit codes:
 enum Command {
     /// Check a program, and every move of it in its workcell, before anything moves.
     Check(commands::check::Arguments),
+    /// Bring source files into their canonical layout.
+    Fmt(commands::fmt::Arguments),
+    /// Print the inverse of a sequence: a disassembly program from an assembly program.
+    Invert(commands::invert::Arguments),
     /// Compile a program to a module.
     Build(commands::build::Arguments),
     /// Run a program on the simulated workcell and tell what happens.
@@ -63,6 +68,8 @@ impl Command {
     /// Whether machines are told, who then learn what is wrong with the input, too.
     fn is_json(&self) -> bool {
         match self {
+            Self::Fmt(arguments) => arguments.json,
+            Self::Invert(arguments) => arguments.json,
             Self::Build(arguments) => arguments.json,
             Self::Run(arguments) => arguments.common.json,
             Self::Back(arguments) => arguments.json,
@@ -90,6 +97,8 @@ fn main() -> ExitCode {
     let is_json = arguments.command.is_json();
     let outcome = match arguments.command {
         Command::Check(arguments) => commands::check::run(&arguments),
+        Command::Fmt(arguments) => commands::fmt::run(&arguments),
+        Command::Invert(arguments) => commands::invert::run(&arguments),
         Command::Build(arguments) => commands::build::run(&arguments),
         Command::Run(arguments) => commands::run::run(&arguments),
         Command::Back(arguments) => commands::back::run(&arguments),

@@ -3,7 +3,7 @@
 use crate::problem::{Problem, plain};
 use std::borrow::Cow;
 use std::fs;
-use std::io::{self, ErrorKind, Write};
+use std::io::{self, ErrorKind, IsTerminal, Write};
 use std::path::{Path, PathBuf};
 
 /// Check that a file can become what a command is about to make, before anything is done: its
@@ -61,13 +61,17 @@ fn is_same(a: &Path, b: &Path) -> bool {
 }
 
 /// Write a file by way of a neighbour that takes its name only when it is complete, so that what
-/// was there is kept if anything goes wrong.
+/// was there is kept if anything goes wrong. Who may read and write it stays as it was.
 pub(crate) fn file(path: &Path, bytes: &[u8]) -> Result<(), Problem> {
     let target = target(path)?;
     // Short, so that it fits wherever the name itself does.
     let neighbour = target.with_file_name(format!(".{}.part", std::process::id()));
     let written = fs::File::create(&neighbour)
         .and_then(|mut file| file.write_all(bytes).and_then(|()| file.sync_all()))
+        .and_then(|()| match fs::metadata(&target) {
+            Ok(metadata) => fs::set_permissions(&neighbour, metadata.permissions()),
+            Err(_) => Ok(()),
+        })
         .and_then(|()| fs::rename(&neighbour, &target));
     written.map_err(|error| {
         // What could not be written need not stay; that it cannot be removed changes nothing.
@@ -95,9 +99,20 @@ pub(crate) fn printable(text: &str) -> Cow<'_, str> {
 /// Print text. A reader that has gone away ends the process quietly, as a pipe's writer should; any
 /// other failure is an error.
 pub(crate) fn out(text: &str) {
+    bytes_out(printable(text).as_bytes());
+}
+
+/// Print a text that is meant for a file: every byte of it, unless people look at it.
+pub(crate) fn exactly(text: &str) {
+    match io::stdout().is_terminal() {
+        true => out(text),
+        false => bytes_out(text.as_bytes()),
+    }
+}
+
+fn bytes_out(bytes: &[u8]) {
     let mut stdout = io::stdout().lock();
-    let Err(error) = stdout.write_all(printable(text).as_bytes()).and_then(|()| stdout.flush())
-    else {
+    let Err(error) = stdout.write_all(bytes).and_then(|()| stdout.flush()) else {
         return;
     };
     if error.kind() == ErrorKind::BrokenPipe {

@@ -58,9 +58,9 @@ fn describe(family: Family) -> &'static str {
         Family::Reversal => "How far, and how, a program can be reversed.",
         Family::Error => "The errors that the program has raised and not yet dealt with.",
         Family::Task => {
-            "Branches that take turns. A turn ends when an act is done and what came of it has been \
-             read, and one switch on the tape says whose it was and how many steps it took. While \
-             an error is pending, the others are held."
+            "Branches that take turns. A turn ends when an act is done and what came of it has \
+             been read, and one switch on the tape says whose it was and how many steps it took. \
+             While an error is pending, the others are held."
         }
     }
 }

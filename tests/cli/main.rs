@@ -2,7 +2,9 @@
 //! it says to wrong input.
 
 mod commands;
+mod fmt;
 mod imports;
+mod invert;
 mod moves;
 mod support;
 mod wrong_files;

@@ -6,6 +6,8 @@ pub(crate) mod check;
 pub(crate) mod dis;
 mod dry;
 pub(crate) mod explain;
+pub(crate) mod fmt;
+pub(crate) mod invert;
 pub(crate) mod isa;
 pub(crate) mod reach;
 pub(crate) mod run;

@@ -3,13 +3,15 @@
 //! [`compile`] is the way in, and [`compile_files`] for a program of several files, which `load`
 //! gathers and `merge` makes one tree of. Read `types` and `units`, then `check` (syntax tree to
 //! checked tree), `effects` (errors and barriers across calls), `lower` (checked tree to code),
-//! `shortfall` (reversals that cannot be had). Knows nothing of machines and robots; the parser is
+//! `shortfall` (reversals that cannot be had). [`invert`] makes of a
+//! sequence its inverse. Knows nothing of machines and robots; the parser is
 //! `obverse-syntax`.
 
 mod check;
 mod effects;
 mod fold;
 mod forks;
+mod invert;
 mod keyframes;
 mod load;
 mod lower;
@@ -33,6 +35,8 @@ use obverse_bytecode::Module;
 use obverse_syntax::diagnostic::{Diagnostic, Severity};
 use obverse_syntax::sources::Sources;
 use report::Reports;
+
+pub use invert::{Inverse, NoInverse, invert, invert_files};
 
 /// What became of a program's text.
 #[derive(Clone, Debug)]

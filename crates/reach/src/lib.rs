@@ -15,8 +15,8 @@
 //! [`MAX_KEPT`] are kept; [`Reach::every`] and [`Reach::way`] ask for all of one point, and for the
 //! reasons, in time linear in the program for each question.
 //!
-//! Read `graph` and `graph/fork`, then `facts`, `sets` and `search`. Knows modules, and neither sources nor
-//! machines; that a run may also end in a fault or a trap is not its subject.
+//! Read `graph` and `graph/fork`, then `facts`, `sets` and `search`. Knows modules, and neither
+//! sources nor machines; that a run may also end in a fault or a trap is not its subject.
 
 mod asked;
 mod class;

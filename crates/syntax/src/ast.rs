@@ -530,12 +530,14 @@ pub enum StatementKind<'s> {
         /// The body.
         body: Block<'s>,
     },
-    /// `for i from 0 to 9 { … }`, both ends included.
+    /// `for i from 0 to 9 { … }`, `for i from 9 down to 0 { … }`, both ends included.
     For {
         /// The counter, which the body cannot assign.
         name: Name<'s>,
         /// The first value.
         first: Expression<'s>,
+        /// Whether it counts down.
+        down: bool,
         /// The last value.
         last: Expression<'s>,
         /// The body.

@@ -2,9 +2,9 @@
 //!
 //! A code is stable: a row may be reworded, but its code is never given another meaning nor used
 //! again. `E00xx` is text and grammar, `E01xx` names, `E02xx` types and units, `E03xx` statements,
-//! structure and errors, `E04xx` reversal, `E05xx` files, `E06xx` forks; `W00xx` warnings, `W04xx`
-//! those about reversal, `W05xx` about files, `W06xx` about forks. It knows nothing of how a
-//! mistake is found or shown.
+//! structure and errors, `E04xx` reversal, `E05xx` files, `E06xx` forks, `E07xx` inversion; `W00xx`
+//! warnings, `W04xx` those about reversal, `W05xx` about files, `W06xx` about forks. It knows
+//! nothing of how a mistake is found or shown.
 
 macro_rules! codes {
     ($($name:ident $code:literal $title:literal
@@ -513,6 +513,24 @@ codes! {
         wrong "sequence main { var n = 0 fork { n = 1 } and { n = 2 } if n > 0 { wait 1 s } }"
         right "sequence main { var a = 0 var b = 0 fork { a = 1 } and { b = 2 } \
                if a + b > 0 { wait 1 s } }"
+
+    // E07xx: inversion. The examples are inverted: their sequence `main`.
+    NotInvertible "E0701" "something that has no inverse"
+        why "The inverse of a sequence is a program of its own, which knows nothing of the run \
+             that it takes back: it has no tape. So each statement must say by itself, or with \
+             those before it, what takes it back. A move goes back to the place that was named \
+             before it; an output to the level that it was set to before, or to the counterpart \
+             of its I/O operation; `x += e` is taken back by `x -= e`; a branch or a loop by its \
+             assertion (`ending when`, `entered when`) or by what it leaves alone. Readings, \
+             errors, barriers and ways out of the middle leave no such trace. A sequence begins \
+             where its first move leads, with the outputs that are set before it."
+        wrong "joints a = [0, 0, 0, 0, 0, 0] deg\n\
+               joints b = [9, 0, 0, 0, 0, 0] deg\n\
+               sequence main { move to a move 20 mm up in base move to b }"
+        right "joints a = [0, 0, 0, 0, 0, 0] deg\n\
+               joints b = [9, 0, 0, 0, 0, 0] deg\n\
+               joints above_a = [0, 9, 0, 0, 0, 0] deg\n\
+               sequence main { move to a move to above_a move to b }"
 
     // W0xxx: warnings.
     Unused "W0001" "something that is never used"

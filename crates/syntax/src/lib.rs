@@ -9,6 +9,7 @@ pub mod codes;
 pub mod diagnostic;
 mod expectation;
 mod foreign;
+pub mod format;
 mod imports;
 mod lexer;
 mod nearest;

@@ -112,7 +112,7 @@ pub(crate) fn unknown_unit(word: &str, span: Span, others: &[&str]) -> Diagnosti
 }
 
 /// The number and the word of `20 mm`.
-fn split_quantity(text: &str) -> (&str, &str) {
+pub(crate) fn split_quantity(text: &str) -> (&str, &str) {
     let bytes = text.as_bytes();
     // `e` is of the number where digits or a sign and digits follow: `1e5 mm`, not `3 eel`.
     let is_number = |index: usize| match bytes[index] {

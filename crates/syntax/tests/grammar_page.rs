@@ -1,6 +1,7 @@
 //! GRAMMAR.md is what the parser accepts: programs are generated from its rules and parsed.
 
-use obverse_syntax::ast::Item;
+use obverse_syntax::ast::{Item, Program};
+use obverse_syntax::format::{format, print};
 use obverse_syntax::{FREE_WORDS, RESERVED_WORDS, UNITS, parse};
 use std::collections::BTreeMap;
 
@@ -175,6 +176,39 @@ fn programs_by_the_rules_are_accepted() {
         };
         assert!(before >= 10, "seed {seed}: {before} declarations");
         assert_eq!(main.body.statements.len(), 20, "seed {seed}:\n{}", writer.text);
+    }
+}
+
+/// A tree without its places.
+fn form(program: &Program<'_>) -> String {
+    let text = format!("{program:?}");
+    let mut form = String::with_capacity(text.len());
+    for (index, part) in text.split("Span { start: ").enumerate() {
+        let after = if index == 0 { Some(part) } else { part.split_once('}').map(|pair| pair.1) };
+        form.push_str(after.unwrap_or_default());
+    }
+    form
+}
+
+#[test]
+fn programs_by_the_rules_are_formatted() {
+    let rules = rules();
+    for seed in 0..500 {
+        let mut writer =
+            Writer { rules: &rules, state: seed, text: String::new(), budget: 0, depth: 0 };
+        writer.write_many("program", 3);
+        writer.text.push_str(" sequence main {");
+        writer.write_many("statement", 20);
+        writer.text.push('}');
+        let before = parse(&writer.text).program;
+        let text = format(&writer.text).expect("a program");
+        assert_eq!(form(&parse(&text).program), form(&before), "seed {seed}:\n{text}");
+        assert_eq!(format(&text).as_ref(), Ok(&text), "seed {seed}: a second time");
+        let comments = |text: &str| text.matches("// a comment\n").count();
+        assert_eq!(comments(&text), comments(&writer.text), "seed {seed}:\n{text}");
+        let printed = print(&before);
+        assert_eq!(form(&parse(&printed).program), form(&before), "seed {seed}:\n{printed}");
+        assert_eq!(format(&printed), Ok(printed), "seed {seed}: what is printed is formatted");
     }
 }
 

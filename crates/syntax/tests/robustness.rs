@@ -1,7 +1,8 @@
 //! Whatever is given, the parser answers: no panic, no overflow of the stack, a bounded number of
-//! diagnostics, all within the text.
+//! diagnostics, all within the text. What has none is formatted, and a second time stays as it is.
 
 use obverse_syntax::codes::Code;
+use obverse_syntax::format::format;
 use obverse_syntax::{MAX_NESTING, MAX_OPERATORS, parse, text_of};
 
 const EXAMPLE: &str = include_str!("example.obv");
@@ -17,6 +18,10 @@ fn codes(source: &str) -> Vec<Code> {
             assert!(source.get(range).is_some(), "{diagnostic:?} in {source:?}");
         }
         assert!(!diagnostic.message.is_empty() && !diagnostic.message.ends_with('.'));
+    }
+    if diagnostics.is_empty() {
+        let formatted = format(source).unwrap_or_else(|found| panic!("{found:?} in {source:?}"));
+        assert_eq!(format(&formatted).as_ref(), Ok(&formatted), "a second time, of {source:?}");
     }
     diagnostics.iter().map(|diagnostic| diagnostic.code).collect()
 }

@@ -502,8 +502,9 @@ fn outline(statement: &Statement<'_>) -> String {
             format!("while:{}{entered}{}", show(condition), block(body))
         }
         StatementKind::Repeat { times, body } => format!("repeat:{}{}", show(times), block(body)),
-        StatementKind::For { name, first, last, body } => {
-            format!("for:{}:{}:{}{}", name.value, show(first), show(last), block(body))
+        StatementKind::For { name, first, down, last, body } => {
+            let down = if *down { ":down" } else { "" };
+            format!("for:{}:{}{down}:{}{}", name.value, show(first), show(last), block(body))
         }
         StatementKind::Loop(body) => format!("loop{}", block(body)),
         StatementKind::Fork(branches) => {
@@ -562,6 +563,7 @@ fn statements_are_told_apart() {
         ("while a entered when b { }", "while:a:b{}"),
         ("repeat 3 times { break }", "repeat:3{break}"),
         ("for i from 0 to n - 1 { break }", "for:i:0:(n Subtract 1){break}"),
+        ("for i from n down to down { break }", "for:i:n:down:down{break}"),
         ("loop { break return }", "loop{break return}"),
         ("fork { break }", "fork{break}"),
         ("fork { break } and { return } and { }", "fork{break}{return}{}"),

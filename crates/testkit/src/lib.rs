@@ -6,7 +6,10 @@
 pub mod altered;
 pub mod code;
 pub mod files;
+pub mod format_laws;
 pub mod hostile;
+pub mod invert_laws;
+pub mod invertible;
 pub mod laws;
 pub mod ledger;
 pub mod logged;

@@ -34,6 +34,8 @@ fn statements_do_what_they_say() {
     assert_eq!(after("while x < 5 { x += 2 }"), 6);
     assert_eq!(after("for i from 3 to 5 { x += i }"), 12);
     assert_eq!(after("for i from 5 to 3 { x += i }"), 0);
+    assert_eq!(after("for i from 5 down to 3 { x = x * 10 + i }"), 543);
+    assert_eq!(after("for i from 3 down to 5 { x += i }"), 0);
     assert_eq!(after("for i from 9223372036854775806 to 9223372036854775807 { x += 1 }"), 2);
     assert_eq!(after("repeat 4 times { x += 1 if x == 3 { break } }"), 3);
     assert_eq!(after("loop { x += 1 if x == 3 { return } } x = 9"), 3);

@@ -4,14 +4,18 @@ use super::Checker;
 use super::expression::{MAX_COMPUTED, Need};
 use super::frame::Around;
 use super::names::Meaning;
+use super::operators::binary;
 use super::statement::Checked;
 use crate::tree::{Block, Expression, Prepared, Statement, StatementKind};
 use crate::types::ValueType;
-use obverse_isa::CounterId;
+use obverse_isa::{CounterId, Instr};
 use obverse_syntax::ast::{self, Name, StatementKind as Written};
 use obverse_syntax::codes::Code;
 use obverse_syntax::diagnostic::Diagnostic;
 use obverse_syntax::span::Span;
+
+/// The name of a loop's counter, if it has one, and what it means.
+type Counted<'s> = Option<(Name<'s>, fn(CounterId) -> Meaning)>;
 
 impl<'s> Checker<'s> {
     /// A branch or a loop.
@@ -30,14 +34,18 @@ impl<'s> Checker<'s> {
                 let first = Expression::int(1, times.span);
                 let last = self.value(times, &Need::new(ValueType::Int, "`repeat`"));
                 let header = Span::new(start, times.span.end);
-                Some(self.counted(None, first, last, body, header))
+                Some(self.counted(None, (first, last), body, header))
             }
-            Written::For { name, first, last, body } => {
+            Written::For { name, first, down, last, body } => {
                 let need = Need::new(ValueType::Int, "`for`");
                 let header = Span::new(start, last.span.end);
                 let first = self.value(first, &need);
                 let last = self.value(last, &need);
-                Some(self.counted(Some(*name), first, last, body, header))
+                let (ends, meaning): (_, fn(CounterId) -> Meaning) = match *down {
+                    false => ((first, last), Meaning::Counter),
+                    true => ((complement(first), complement(last)), Meaning::CountDown),
+                };
+                Some(self.counted(Some((*name, meaning)), ends, body, header))
             }
             Written::Loop(body) => {
                 let header = self.header(start, body.span);
@@ -99,9 +107,8 @@ impl<'s> Checker<'s> {
 
     fn counted(
         &mut self,
-        name: Option<Name<'s>>,
-        first: Expression,
-        last: Expression,
+        counted: Counted<'s>,
+        (first, last): (Expression, Expression),
         body: &ast::Block<'s>,
         header: Span,
     ) -> (Statement, bool) {
@@ -116,8 +123,8 @@ impl<'s> Checker<'s> {
         self.frame.counter_peak = self.frame.counter_peak.max(self.frame.counters);
         self.frame.layout.counters = self.frame.layout.counters.max(self.frame.counters);
         let scope = self.names.open();
-        if let Some(name) = name {
-            self.declare(name, Meaning::Counter(counter));
+        if let Some((name, meaning)) = counted {
+            self.declare(name, meaning(counter));
             self.names.mark_used(name.value);
         }
         let (body, _) = self.body(body, header);
@@ -145,4 +152,11 @@ impl<'s> Checker<'s> {
                 .with_help("leave the assertion out");
         self.reports.add(diagnostic);
     }
+}
+
+/// The number as far below -1 as this one is above, or the other way round. It turns the order of
+/// all integers round, so that a loop that counts the complements up counts the numbers down.
+pub(super) fn complement(number: Expression) -> Expression {
+    let span = number.span;
+    binary(Instr::IntSub {}, Expression::int(-1, span), number, ValueType::Int, span)
 }

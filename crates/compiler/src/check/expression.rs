@@ -1,6 +1,7 @@
 //! Expressions: names, literals and readings, and whether a value is what is needed.
 
 use super::Checker;
+use super::control::complement;
 use super::frame::Readings;
 use super::names::{Found, Meaning};
 use crate::tree::{Expression, ExpressionKind, Hoist, Prepared};
@@ -263,8 +264,11 @@ impl<'s> Checker<'s> {
     /// The value that a name stands for.
     fn named_value(&mut self, name: ast::Name<'s>) -> Expression {
         let is_value = |meaning| {
-            use Meaning::{Counter, Global, Item, Joints, Local};
-            matches!(meaning, Joints(_) | Item(_) | Global(..) | Local(..) | Counter(_))
+            use Meaning::{CountDown, Counter, Global, Item, Joints, Local};
+            matches!(
+                meaning,
+                Joints(_) | Item(_) | Global(..) | Local(..) | Counter(_) | CountDown(_)
+            )
         };
         let Some(meaning) = self.resolve(name, "a value", is_value) else {
             return Expression::missing(name.span);
@@ -274,7 +278,9 @@ impl<'s> Checker<'s> {
             Meaning::Item(item) => (ExpressionKind::Item(item), ValueType::Item),
             Meaning::Global(global, of_type) => (ExpressionKind::Global(global), of_type),
             Meaning::Local(local, of_type) => (ExpressionKind::Local(local), of_type),
-            Meaning::Counter(counter) => (ExpressionKind::Counter(counter), ValueType::Int),
+            Meaning::Counter(counter) | Meaning::CountDown(counter) => {
+                (ExpressionKind::Counter(counter), ValueType::Int)
+            }
             _ => (ExpressionKind::Missing, ValueType::Unknown),
         };
         if of_type.is_unknown() {
@@ -284,7 +290,8 @@ impl<'s> Checker<'s> {
             self.report_variable_in_constant(name);
             return Expression::missing(name.span);
         }
-        Expression { kind, of_type, span: name.span }
+        let value = Expression { kind, of_type, span: name.span };
+        if matches!(meaning, Meaning::CountDown(_)) { complement(value) } else { value }
     }
 
     fn report_variable_in_constant(&mut self, name: ast::Name<'s>) {

@@ -22,6 +22,7 @@ use obverse_syntax::ast::{
 };
 use obverse_syntax::codes::Code;
 use obverse_syntax::diagnostic::Diagnostic;
+use obverse_syntax::format::print_expression;
 use obverse_syntax::span::{Span, Spanned};
 
 /// A move that came closer than this to its distance has come all the way, in metres.
@@ -199,10 +200,7 @@ impl<'s> Checker<'s> {
     }
 
     fn requires(&mut self, condition: &ast::Expression<'s>, span: Span) -> (Prepared, ReasonId) {
-        let source = self.sources.whole();
-        let text = source.get(condition.span.start as usize..condition.span.end as usize);
-        let words: Vec<&str> = text.unwrap_or_default().split_whitespace().collect();
-        let reason = format!("{} requires {}", self.frame.name, words.join(" "));
+        let reason = format!("{} requires {}", self.frame.name, print_expression(condition));
         let reason = self.reason(Spanned::new(&reason, span));
         (self.prepared(condition, &Need::new(ValueType::Bool, "`requires`")), reason)
     }

@@ -33,8 +33,10 @@ pub(crate) enum Meaning {
     Global(GlobalId, ValueType),
     /// A variable or a parameter of a sequence.
     Local(LocalId, ValueType),
-    /// The counter of a loop.
+    /// The counter of a loop that counts up.
     Counter(CounterId),
+    /// The counter of a loop that counts down: the loop counts up the complements of its values.
+    CountDown(CounterId),
     /// A remembered position.
     Position(SlotId),
 }
@@ -53,7 +55,7 @@ impl Meaning {
             Self::Sequence(_) => "a sequence",
             Self::Action(_) => "an action",
             Self::Global(..) | Self::Local(..) => "a variable",
-            Self::Counter(_) => "the counter of a loop",
+            Self::Counter(_) | Self::CountDown(_) => "the counter of a loop",
             Self::Position(_) => "a position",
         }
     }
@@ -81,7 +83,7 @@ impl Meaning {
     }
 
     fn is_of_frame(self) -> bool {
-        matches!(self, Self::Local(..) | Self::Counter(_) | Self::Position(_))
+        matches!(self, Self::Local(..) | Self::Counter(_) | Self::CountDown(_) | Self::Position(_))
     }
 }
 

@@ -323,7 +323,7 @@ impl<'s> Checker<'s> {
                 Meaning::Global(..) | Meaning::Local(..) => ("a variable", "read"),
                 // What the workcell has is not the program's to leave out.
                 Meaning::Item(_) | Meaning::Output(_) | Meaning::Input(_) => continue,
-                Meaning::Counter(_) => continue,
+                Meaning::Counter(_) | Meaning::CountDown(_) => continue,
                 _ => (symbol.meaning.kind(), "used"),
             };
             let message = format!("`{name}` is {kind} that is never {use_}");

@@ -1,10 +1,15 @@
 //! Every diagnostic of the compiler: its example has it and no other, and the corrected one none.
 
 use crate::common::{findings, module};
+use obverse_compiler::{NoInverse, invert};
 use obverse_syntax::codes::Code;
 
+fn is_of_inversion(code: Code) -> bool {
+    code.as_str().starts_with("E05")
+}
+
 fn codes_of_the_compiler() -> impl Iterator<Item = Code> {
-    let is_of_compiler = |code: &Code| !code.as_str().starts_with("E00");
+    let is_of_compiler = |code: &Code| !code.as_str().starts_with("E00") && !is_of_inversion(*code);
     Code::ALL.iter().copied().filter(is_of_compiler)
 }
 
@@ -22,5 +27,19 @@ fn the_right_example_compiles_without_a_word() {
     for code in codes_of_the_compiler().filter(|code| !code.right_example().is_empty()) {
         assert_eq!(findings(code.right_example()), Vec::<String>::new(), "{code}");
         module(code.right_example());
+    }
+}
+
+#[test]
+fn the_examples_of_inversion_are_inverted_or_refused() {
+    for code in Code::ALL.iter().copied().filter(|code| is_of_inversion(*code)) {
+        match invert("example.obv", code.wrong_example(), "main") {
+            Err(NoInverse::Diagnosed(found)) => {
+                let codes: Vec<Code> = found.iter().map(|one| one.code).collect();
+                assert_eq!(codes, [code]);
+            }
+            other => panic!("{code}: {other:?}"),
+        }
+        assert!(invert("example.obv", code.right_example(), "main").is_ok(), "{code}");
     }
 }

@@ -11,6 +11,7 @@ mod forks;
 mod generated;
 mod guarded;
 mod imports;
+mod invert;
 mod limits;
 mod module;
 mod reversal;

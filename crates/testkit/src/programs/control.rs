@@ -200,19 +200,25 @@ impl Generator<'_, '_> {
                 self.open(&format!("repeat min({times}, {rounds}) times"));
             }
             1 => {
-                // A loop that ends at the largest integer ends there.
+                // A loop that ends at the largest integer, or the smallest, ends there.
                 let counter = self.name("i");
-                self.open(&format!(
-                    "for {counter} from {} to {}",
-                    i64::MAX - (rounds as i64 - 1),
-                    i64::MAX
-                ));
+                let (first, last) = (i64::MAX - (rounds as i64 - 1), i64::MAX);
+                let head = match self.one_in(2)? {
+                    true => format!("for {counter} from -{first} - 1 down to -{last} - 1"),
+                    false => format!("for {counter} from {first} to {last}"),
+                };
+                self.open(&head);
                 self.declare(&counter, Type::Int, false);
             }
             _ => {
                 let counter = self.name("i");
                 let (first, last) = (self.expression(Type::Int)?, self.expression(Type::Int)?);
-                self.open(&format!("for {counter} from max({first}, 1) to min({last}, {rounds})"));
+                let (least, most) = (format!("max({first}, 1)"), format!("min({last}, {rounds})"));
+                let head = match self.one_in(2)? {
+                    true => format!("for {counter} from {most} down to {least}"),
+                    false => format!("for {counter} from {least} to {most}"),
+                };
+                self.open(&head);
                 self.declare(&counter, Type::Int, false);
             }
         }

@@ -3,7 +3,7 @@
 use super::error::Site;
 use super::statement::speed;
 use super::value::Value;
-use super::{Interpreter, Run, Trap};
+use super::{Counter, Interpreter, Run, Trap};
 use obverse_syntax::ast::{
     Block, Expression, Primitive, ReverseParameter, Sequence, Statement, StatementKind,
 };
@@ -71,11 +71,18 @@ impl<'p> Interpreter<'p, '_> {
             }
             StatementKind::Repeat { times, body } => {
                 let times = self.value(times)?.int();
-                self.counted(None, 1, times, body)
+                self.counted(None, 1..=times, |count| count, body)
             }
-            StatementKind::For { name, first, last, body } => {
+            StatementKind::For { name, first, down, last, body } => {
                 let [first, last] = self.values([first, last])?;
-                self.counted(Some(name.value), first.int(), last.int(), body)
+                let (first, last) = (first.int(), last.int());
+                match down {
+                    false => self.counted(Some(name.value), first..=last, |count| count, body),
+                    true => {
+                        let counts = (last..=first).rev();
+                        self.counted(Some(name.value), counts, |count| !count, body)
+                    }
+                }
             }
             StatementKind::Loop(body) => self.endless(body),
             StatementKind::Fork(branches) => self.one_after_another(branches),
@@ -187,16 +194,17 @@ impl<'p> Interpreter<'p, '_> {
         Ok(Flow::Next)
     }
 
+    /// A loop over numbers, of which a machine keeps others.
     fn counted(
         &mut self,
         name: Option<&'p str>,
-        first: i64,
-        last: i64,
+        counts: impl Iterator<Item = i64>,
+        kept: impl Fn(i64) -> i64,
         body: &'p Block<'p>,
     ) -> Run<Flow> {
-        for count in first..=last {
+        for count in counts {
             self.step()?;
-            self.frame_mut().counters.push((name, count));
+            self.frame_mut().counters.push(Counter { name, count, kept: kept(count) });
             let flow = self.block(body)?;
             self.frame_mut().counters.pop();
             match flow {

@@ -103,13 +103,13 @@ impl<'p> Interpreter<'p, '_> {
     /// What a name stands for.
     pub(super) fn variable(&self, name: &str) -> Option<Value> {
         let frame = self.frame();
-        let counter = frame.counters.iter().rev().find(|(counter, _)| *counter == Some(name));
+        let counter = frame.counters.iter().rev().find(|counter| counter.name == Some(name));
         let global = self.globals.iter().find(|(global, _)| *global == name);
         frame
             .locals
             .get(name)
             .copied()
-            .or(counter.map(|(_, value)| Value::Int(*value)))
+            .or(counter.map(|counter| Value::Int(counter.count)))
             .or(global.map(|(_, value)| *value))
             .or_else(|| self.names.value(name))
     }

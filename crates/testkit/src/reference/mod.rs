@@ -92,7 +92,8 @@ pub struct StateCopy {
     pub globals: Vec<(String, u64)>,
     /// The variables of the call that have been declared so far, by name.
     pub locals: BTreeMap<String, u64>,
-    /// The counters of the loops around, outermost first.
+    /// The counters of the loops around, outermost first. A loop that counts down keeps the
+    /// complements of its numbers.
     pub counters: Vec<i64>,
     /// The positions that the call remembers, by name.
     pub positions: BTreeMap<String, [u64; 6]>,
@@ -149,7 +150,7 @@ struct Frame<'p> {
     locals: BTreeMap<&'p str, Value>,
     positions: BTreeMap<&'p str, JointConfiguration>,
     /// The loops that count around the statement in hand.
-    counters: Vec<(Option<&'p str>, i64)>,
+    counters: Vec<Counter<'p>>,
     /// How often its errors had the sequence begin again.
     rounds: u32,
 }
@@ -160,6 +161,15 @@ struct GoingBack {
     speed: Option<Speed>,
     limit_n: f64,
     is_straight: bool,
+}
+
+/// A loop that counts.
+#[derive(Debug)]
+struct Counter<'p> {
+    name: Option<&'p str>,
+    count: i64,
+    /// What a machine has in its place.
+    kept: i64,
 }
 
 struct Interpreter<'p, 'c> {
@@ -228,7 +238,7 @@ impl<'p, 'c> Interpreter<'p, 'c> {
             calls: self.frames.len(),
             globals: named(self.globals.iter().map(|(name, value)| (name, value.bits()))),
             locals: named(frame.locals.iter().map(|(name, value)| (name, value.bits()))),
-            counters: frame.counters.iter().map(|(_, value)| *value).collect(),
+            counters: frame.counters.iter().map(|counter| counter.kept).collect(),
             positions: named(frame.positions.iter().map(|(name, at)| (name, at.bits()))),
             settings: [
                 self.speed as u64,

@@ -1,0 +1,249 @@
+//! Declarations as pieces.
+
+use super::piece::{Column, Glue, Member};
+use super::writer::{Style, Writer};
+use crate::ast::{
+    Behaviour, Change, Continuation, Depth, ErrorClause, Extent, Item, JointsDeclaration, Keyframe,
+    MoveClause, Otherwise, Recovery, Respond, Sequence, Severity, SignalKind,
+};
+use crate::span::Spanned;
+
+impl<'s> Writer<'s> {
+    /// What stands at the top of a file, each on lines of its own. Without a source, what is long
+    /// or of another kind than the one before stands apart from it.
+    pub(super) fn items(&mut self, items: &[Item<'s>]) -> Vec<Member<'s>> {
+        let mut members = self.members(items, Self::item);
+        members.iter_mut().for_each(|member| member.is_in_row = false);
+        let is_apart = |pair: &[Item<'s>]| {
+            let is_same_kind = std::mem::discriminant(&pair[0]) == std::mem::discriminant(&pair[1]);
+            let is_long =
+                matches!(pair[1], Item::Sequence(_) | Item::Error(_) | Item::AdvancedMove(_));
+            is_long || !is_same_kind
+        };
+        for (pair, member) in items.windows(2).zip(members.iter_mut().skip(1)) {
+            member.set_apart(!self.has_source() && is_apart(pair));
+        }
+        members
+    }
+
+    fn item(&mut self, item: &Item<'s>) {
+        match item {
+            Item::Cell(path) => {
+                self.word("cell");
+                self.quoted(path.value);
+            }
+            Item::Import(path) => {
+                self.word("import");
+                self.quoted(path.value);
+            }
+            Item::Signal(entry) => {
+                self.named(
+                    match entry.kind {
+                        SignalKind::Output => "output",
+                        SignalKind::Input => "input",
+                    },
+                    entry.name.value,
+                );
+                self.column(Column::Value);
+                self.word("=");
+                self.index(entry.number);
+            }
+            Item::Io(io) => {
+                self.named("io", io.name.value);
+                self.braces(&io.primitives, Style::table(false), Self::primitive);
+                if let Some(counterpart) = io.counterpart {
+                    self.column(Column::Reversal);
+                    self.named("reverse", counterpart.value);
+                }
+            }
+            Item::Joints(joints) => self.joints(joints),
+            Item::ItemDeclaration(item) => {
+                self.named("item", item.name.value);
+                let style = Style::table(item.keyframes.len() > 1);
+                self.braces(&item.keyframes, style, Self::keyframe);
+            }
+            Item::Error(error) => {
+                self.named("error", error.name.value);
+                let style = Style::table(error.clauses.len() > 1);
+                self.braces(&error.clauses, style, Self::error_clause);
+            }
+            Item::AdvancedMove(advanced) => {
+                self.word("advanced");
+                self.named("move", advanced.name.value);
+                let style = Style { is_broken: true, is_table: false };
+                self.braces(&advanced.clauses, style, Self::move_clause);
+                if let Some(counterpart) = advanced.counterpart {
+                    self.named("reverse", counterpart.value);
+                }
+            }
+            Item::Variable(variable) => self.variable(variable),
+            Item::Sequence(sequence) => self.sequence(sequence),
+        }
+    }
+
+    fn joints(&mut self, joints: &JointsDeclaration<'s>) {
+        self.named("joints", joints.name.value);
+        self.column(Column::Value);
+        self.word("=");
+        self.vector(&joints.values);
+    }
+
+    fn keyframe(&mut self, keyframe: &Keyframe<'s>) {
+        self.named("keyframe", keyframe.name.value);
+        self.column(Column::Value);
+        self.word("=");
+        self.vector(&keyframe.position);
+        if let Some(rotation) = &keyframe.rotation {
+            self.vector(rotation);
+        }
+    }
+
+    fn sequence(&mut self, sequence: &Sequence<'s>) {
+        self.named(if sequence.is_action { "action" } else { "sequence" }, sequence.name.value);
+        if !sequence.parameters.is_empty() || self.is_next("(") {
+            self.glue(Glue::Tight);
+            self.list(["(", ")"], &sequence.parameters, |writer, parameter| {
+                writer.text(parameter.name.value);
+                writer.tight(":");
+                writer.text(parameter.type_name.value);
+            });
+        }
+        self.body(&sequence.body, !sequence.body.statements.is_empty());
+    }
+
+    fn error_clause(&mut self, clause: &Spanned<ErrorClause<'s>>) {
+        match &clause.value {
+            ErrorClause::Severity(severity) => {
+                self.word("severity");
+                self.word(match severity {
+                    Severity::Warning => "warning",
+                    Severity::Recoverable => "recoverable",
+                    Severity::Fatal => "fatal",
+                });
+            }
+            ErrorClause::Recover(recovery) => {
+                self.word("recover");
+                self.recovery(recovery);
+            }
+            ErrorClause::Otherwise(otherwise) => {
+                self.word("otherwise");
+                match otherwise {
+                    Otherwise::Using(name) => self.named("using", name.value),
+                    Otherwise::Operator => self.word("operator"),
+                    Otherwise::Stop => self.word("stop"),
+                }
+            }
+            ErrorClause::Respond(respond) => {
+                self.word("respond");
+                self.words(match respond {
+                    Respond::AtOnce => &["at", "once"],
+                    Respond::AfterAction => &["after", "current", "action"],
+                    Respond::AfterSequence => &["after", "current", "sequence"],
+                });
+            }
+            ErrorClause::Then(continuation) => {
+                self.word("then");
+                self.words(match continuation {
+                    Continuation::Action => &["return", "to", "action"],
+                    Continuation::NextAction => &["continue"],
+                    Continuation::Sequence => &["return", "to", "sequence"],
+                    Continuation::Program => &["restart", "program"],
+                    Continuation::Stop => &["stop"],
+                });
+            }
+        }
+    }
+
+    fn recovery(&mut self, recovery: &Recovery<'s>) {
+        match recovery {
+            Recovery::Using(name) => self.named("using", name.value),
+            Recovery::Reversing { depth, extent, changes } => {
+                self.words(&["by", "reversing"]);
+                match depth {
+                    Depth::Fixed => {}
+                    Depth::Escalating => self.word("escalating"),
+                    Depth::Learned => self.word("learned"),
+                }
+                self.extent(*depth, extent);
+                for change in changes {
+                    self.tight(",");
+                    self.glue(Glue::Break);
+                    match &change.value {
+                        Change::Perturbed(distance) => {
+                            self.word("perturbed");
+                            self.expression(distance);
+                        }
+                        Change::Slower => self.word("slower"),
+                        Change::Lighter => self.word("lighter"),
+                    }
+                }
+            }
+        }
+    }
+
+    /// How far; `up` may stand before any of them.
+    fn extent(&mut self, depth: Depth, extent: &Extent<'s>) {
+        let is_bound = !self.has_source() && depth != Depth::Fixed;
+        if is_bound || self.is_next("up") {
+            self.word("up");
+        }
+        match extent {
+            Extent::Actions(count) => {
+                if is_bound || self.is_next("to") {
+                    self.word("to");
+                }
+                self.index(*count);
+                self.text(if count.value == 1 { "action" } else { "actions" });
+            }
+            Extent::Checkpoint(name) => {
+                self.word("to");
+                self.named("checkpoint", name.value);
+            }
+            Extent::Sequence => self.words(&["to", "start", "of", "sequence"]),
+        }
+    }
+
+    fn move_clause(&mut self, clause: &Spanned<MoveClause<'s>>) {
+        match &clause.value {
+            MoveClause::Requires(condition) => {
+                self.word("requires");
+                self.expression(condition);
+            }
+            MoveClause::Distance { distance, heading, frame } => {
+                self.word("distance");
+                self.way(distance, heading.value, *frame);
+            }
+            MoveClause::StopIf(condition) => {
+                self.words(&["stop", "if"]);
+                self.expression(condition);
+            }
+            MoveClause::Speed(speed) => self.speed(*speed),
+            MoveClause::SucceedsIf(condition) => {
+                self.words(&["succeeds", "if"]);
+                self.expression(condition);
+            }
+            MoveClause::OppositeForce => self.words(&["opposite", "force", "in", "reverse"]),
+            MoveClause::OnSuccess(behaviours) => self.behaviours("success", behaviours),
+            MoveClause::OnFailure(behaviours) => self.behaviours("failure", behaviours),
+        }
+    }
+
+    fn behaviours(&mut self, word: &'static str, behaviours: &[Spanned<Behaviour<'s>>]) {
+        self.words(&["on", word]);
+        let style = Style { is_broken: behaviours.len() > 1, is_table: false };
+        self.braces(behaviours, style, |writer, behaviour| match &behaviour.value {
+            Behaviour::ReturnToInitialPosition => {
+                writer.words(&["return", "to", "initial", "position"]);
+            }
+            Behaviour::RepeatWithPerturbation { within, times } => {
+                writer.words(&["repeat", "with", "perturbation"]);
+                if let Some(within) = within {
+                    writer.expression(within);
+                }
+                writer.index(*times);
+                writer.word("times");
+            }
+            Behaviour::Throw(name) => writer.named("throw", name.value),
+        });
+    }
+}

@@ -1,0 +1,65 @@
+//! `obverse invert` through its binary: what is printed, what is refused, with which exit codes.
+
+use crate::support::Bench;
+use serde_json::json;
+
+#[test]
+fn the_inverse_is_a_program_that_is_formatted_and_correct() {
+    let bench = Bench::new("invert");
+    let inverse = bench.ends(0, &["invert", "sheets.obv", "main"]).stdout;
+    assert!(inverse.starts_with("// The inverse of `main` in sheets.obv.\n\ncell "), "{inverse}");
+    bench.write("back.obv", &inverse);
+    bench.ends(0, &["fmt", "--check", "back.obv"]);
+    // The sheets lie in the tray yet: that it would find them on the bed, nobody can check.
+    let checked = bench.ends(1, &["check", "back.obv"]).stdout;
+    assert!(checked.starts_with("back.obv: correct, no warnings;"), "{checked}");
+    let again = bench.ends(0, &["invert", "back.obv", "main_inverse"]).stdout;
+    let same = |words: &str| again.contains(words);
+    assert!(same("sequence main {\n  call lay(sheet_1)\n") && same("var laid = 0\n"), "{again}");
+}
+
+#[test]
+fn what_nobody_knows_is_left_to_who_calls_the_inverse() {
+    let bench = Bench::new("invert_action");
+    let inverse = bench.ends(0, &["invert", "sheets.obv", "lay"]).stdout;
+    assert!(inverse.contains("// `main` is empty:"), "{inverse}");
+    assert!(inverse.ends_with("sequence main {}\n"), "{inverse}");
+    let lines = bench.ends(0, &["invert", "--json", "sheets.obv", "lay"]).json();
+    assert_eq!(lines[0]["type"], "inverse");
+    assert_eq!(
+        (&lines[0]["name"], &lines[0]["is_begun_with"]),
+        (&json!("lay_inverse"), &json!(false))
+    );
+    assert_eq!(lines[0]["text"], json!(inverse));
+    assert_eq!((&lines[1]["type"], &lines[1]["outcome"]), (&json!("summary"), &json!("inverted")));
+}
+
+#[test]
+fn a_sequence_without_an_inverse_is_found_wanting() {
+    let bench = Bench::new("invert_refused");
+    let ran = bench.ends(1, &["invert", "glue.obv", "draw_bead"]);
+    assert_eq!(ran.stdout, "");
+    assert!(
+        ran.stderr.contains("[E0701]") && ran.stderr.contains("glue.obv:21:3"),
+        "{}",
+        ran.stderr
+    );
+    let lines = bench.ends(1, &["invert", "--json", "glue.obv", "main"]).json();
+    let first = &lines[0];
+    assert_eq!((&first["code"], &first["line"]), (&json!("E0701"), &json!(21)));
+    assert_eq!(first["labels"][0]["text"], "called here");
+    let summary = &lines[lines.len() - 1];
+    assert_eq!((&summary["type"], &summary["outcome"]), (&json!("summary"), &json!("no inverse")));
+}
+
+#[test]
+fn wrong_input_is_refused() {
+    let bench = Bench::new("invert_wrong");
+    bench.write("wrong.obv", "sequence main { move to nowhere }\n");
+    bench.write("binary.obv", b"\xff\x00");
+    bench.refuses(&["invert", "tower.obv", "pock"], &["no sequence or action `pock`", "`pick`?"]);
+    bench.refuses(&["invert", "wrong.obv", "main"], &["[E0101]", "nowhere"]);
+    bench.refuses(&["invert", "binary.obv", "main"], &["[E0007]"]);
+    bench.refuses(&["invert", "none.obv", "main"], &["cannot be read"]);
+    assert_eq!(bench.refuses_as_json(&["invert", "--json", "tower.obv", "pock"]).len(), 1);
+}
