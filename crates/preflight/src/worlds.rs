@@ -9,7 +9,7 @@ use crate::verdict::{Verdict, of_fault};
 use obverse_geometry::{JOINT_COUNT, JointConfiguration};
 use obverse_sim::{Cell, Plan, Sim};
 use obverse_workcell::{Arm, Fault, Goal, Gripper, Motion, MotionEnd, MotionReport, Path};
-use std::collections::{HashMap, HashSet};
+use std::collections::HashMap;
 use std::rc::Rc;
 
 /// The most motions that are looked at.
@@ -19,8 +19,8 @@ const MAX_LOOKS: usize = 2_000_000;
 /// The most workcells that are kept, times the items in each and a few for the rest.
 const MAX_KEPT: usize = 400_000;
 
-/// In a run a contact may press so many times as hard as in the check where it stopped the arm.
-const FELT_MARGIN: f64 = 4.0;
+/// What is left for what was not tried, when a contact may press harder in a run.
+const FELT_MARGIN: f64 = 1.25;
 /// What meets something after this part of its way to a place of contact may get there in a run.
 const FELT_FROM: f64 = 0.9;
 
@@ -66,8 +66,9 @@ pub(crate) struct Worlds {
     list: Vec<World>,
     by_numbers: HashMap<Vec<u64>, WorldId>,
     answers: HashMap<(WorldId, Vec<u64>), Answer>,
-    /// Joints where contact stopped the arm, or counted from there.
-    felt: HashSet<[u64; JOINT_COUNT]>,
+    /// Joints where contact stopped the arm, or counted from there, and how many times as hard as
+    /// here it may press in a run.
+    felt: HashMap<[u64; JOINT_COUNT], f64>,
     gripper_output: Option<u16>,
     max_worlds: usize,
     max_questions: usize,
@@ -95,7 +96,7 @@ impl Worlds {
             list: Vec::new(),
             by_numbers: HashMap::new(),
             answers: HashMap::new(),
-            felt: HashSet::new(),
+            felt: HashMap::new(),
             gripper_output,
             max_worlds,
             max_questions,
@@ -265,7 +266,7 @@ impl Worlds {
             };
             return self.unclear(Reason::LongContact, after);
         };
-        let presses = self.presses_where_felt(motion, guard, &plan, &outcome);
+        let presses = self.presses_where_felt(world, motion, guard, (&outcome, &plan));
         match outcome.and_then(|report| stopped_is_fault(report, guard)) {
             Ok(report) => {
                 let after = self.keep(World { plan, ..world.clone() });
@@ -299,34 +300,38 @@ impl Worlds {
     /// too hard in a run: when the force is read decides where exactly the arm was stopped.
     fn presses_where_felt(
         &mut self,
+        world: &World,
         motion: &Motion,
         guard: Guard,
-        plan: &Plan,
-        outcome: &Result<MotionReport, Fault>,
+        (outcome, after): (&Result<MotionReport, Fault>, &Plan),
     ) -> bool {
-        let goal_is_felt = match &motion.goal {
-            Goal::Joints(to) => self.felt.contains(&to.bits()),
-            Goal::Pose(_) => false,
+        let felt = match &motion.goal {
+            Goal::Joints(to) => self.felt.get(&to.bits()).copied(),
+            Goal::Pose(_) => None,
             Goal::Displaced { from, .. } | Goal::Offset { from, .. } => {
-                self.felt.contains(&from.bits())
+                self.felt.get(&from.bits()).copied()
             }
         };
-        match outcome {
-            Ok(report) => {
-                let is_stopped = report.end == MotionEnd::StoppedByForce;
-                if is_stopped || goal_is_felt {
-                    self.felt.insert(plan.workcell().joints().bits());
-                }
-                let mut most_n = self.cell().contact.stop_force_n;
-                if let Guard::Faults(Some(limit_n)) = guard {
-                    most_n = most_n.min(limit_n);
-                }
-                let is_safe = plan.contact_n() * FELT_MARGIN <= most_n;
-                goal_is_felt && !is_safe && !matches!(guard, Guard::Ends(_))
+        let report = match outcome {
+            Ok(report) => report,
+            Err(Fault::Collision { fraction, .. }) => {
+                return felt.is_some() && *fraction >= FELT_FROM;
             }
-            Err(Fault::Collision { fraction, .. }) => goal_is_felt && *fraction >= FELT_FROM,
-            Err(_) => false,
+            Err(_) => return false,
+        };
+        let (joints, contact_n) = (after.workcell().joints().bits(), after.contact_n());
+        if matches!(guard, Guard::Ends(_)) && report.end == MotionEnd::StoppedByForce {
+            let most_n = world.plan.contact_after_at_most_n(motion);
+            self.felt.insert(joints, FELT_MARGIN * (most_n / contact_n).max(1.0));
+            return false;
         }
+        let Some(times) = felt else { return false };
+        self.felt.insert(joints, times);
+        let mut most_n = self.cell().contact.stop_force_n;
+        if let Guard::Faults(Some(limit_n)) = guard {
+            most_n = most_n.min(limit_n);
+        }
+        !matches!(guard, Guard::Ends(_)) && contact_n * times > most_n
     }
 
     /// Of a motion that begins nobody knows where, only its goal can be looked at.

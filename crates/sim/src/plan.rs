@@ -16,6 +16,9 @@ use obverse_workcell::{Arm, DigitalIo, Fault, Gripper, Motion, MotionReport, Saf
 /// that it touches all the way.
 const LOOKS_MAX: u32 = 1_000;
 
+/// How many times within a period of the force sensor a motion is begun at.
+const PHASES: u32 = 8;
+
 /// A workcell that can be asked what would come of a command.
 #[derive(Clone, Debug)]
 pub struct Plan {
@@ -69,6 +72,19 @@ impl Plan {
         after.sim.release();
         // Nothing else stops a workcell in thought.
         (outcome != Err(Fault::Stopped)).then_some((outcome, after))
+    }
+
+    /// The largest contact force that a motion may end with, in newtons: the force is read from time
+    /// to time, and when that is, relative to the motion, is not known beforehand.
+    #[must_use]
+    pub fn contact_after_at_most_n(&self, motion: &Motion) -> f64 {
+        let sample_s = self.sim.cell().force_sensor.sample_s;
+        let contact_n = |phase: u32| {
+            let mut later = self.clone();
+            later.sim.now_s += sample_s * f64::from(phase) / f64::from(PHASES);
+            later.after(motion).map_or(0.0, |(_, after)| after.contact_n())
+        };
+        (0..PHASES).map(contact_n).fold(0.0, f64::max)
     }
 
     /// The contact force where the arm stands, in newtons.
