@@ -206,8 +206,8 @@ reasons! {
     StopNotKnown "P0609" NotKnown "it goes to where contact stopped the arm, and presses there"
         "Where a guarded move stops, and how hard it presses then, depends on when the force is \
          read. Coming there again without a guard, the arm may press harder than the workcell \
-         allows, or not as hard.\n\nLet the guarded move press less (slower, with a lower limit), or \
-         go back over it with `opposite force in reverse`."
+         allows, or not as hard.\n\nLet the guarded move press less (slower, with a lower limit), \
+         or go back over it with `opposite force in reverse`."
     LongContact "P0610" NotKnown "it moves in contact for longer than is looked at"
         "Something touches all along the way, and the check looks at the first part of it alone. \
          Does the arm stand free of everything where the move begins?"

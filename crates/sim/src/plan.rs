@@ -74,8 +74,8 @@ impl Plan {
         (outcome != Err(Fault::Stopped)).then_some((outcome, after))
     }
 
-    /// The largest contact force that a motion may end with, in newtons: the force is read from time
-    /// to time, and when that is, relative to the motion, is not known beforehand.
+    /// The largest contact force that a motion may end with, in newtons: the force is read from
+    /// time to time, and when that is, relative to the motion, is not known beforehand.
     #[must_use]
     pub fn contact_after_at_most_n(&self, motion: &Motion) -> f64 {
         let sample_s = self.sim.cell().force_sensor.sample_s;
