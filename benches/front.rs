@@ -1,50 +1,18 @@
-//! The front end: lines a second of lexing and parsing, and of all that leads to a module.
+//! The front end: lines a second of lexing and parsing, and of all that leads to a module, on a
+//! program of a million lines; and what it takes to say that a program is wrong.
 
 use criterion::{Criterion, Throughput, criterion_group, criterion_main};
-use std::fmt::Write;
+use obverse_testkit::large;
 
-/// What every sequence does.
-const BODY: &str = "
-  var offset = gap * 2 + 0.5 mm
-  var rounds = times mod 7
-  io gripper_open
-  move to start
-  while rounds > 0 {
-    if input 3 and rounds < 5 {
-      move 20 mm up in base
-      done += 1
-    } else {
-      offset = offset + 1 mm
-      wait 0.1 s
-    }
-    rounds -= 1
-  }
-  for i from 1 to 3 {
-    done += i * 2
-  }
-  speed slow { move to start linearly }";
-
-/// A program of so many sequences, each of some twenty lines.
-fn long_program(sequences: usize) -> String {
-    let mut text = String::from("joints start = [0.1, -1.2, 1.3, -1.7, -1.57, 0.3] rad\n");
-    text.push_str("io gripper_open { set 0 low; sleep 0.5 s }\nvar done = 0\n\n");
-    for index in 0..sequences {
-        let _ = writeln!(text, "sequence part_{index}(gap: length, times: int) {{{BODY}");
-        let _ = writeln!(text, "  checkpoint after_{index}\n}}\n");
-    }
-    text.push_str("sequence main {\n");
-    for index in 0..sequences {
-        let _ = writeln!(text, "  call part_{index}(3 mm, {index})");
-    }
-    text.push_str("}\n");
-    text
+/// How long the program is: a million lines, or little where it is only tried whether this runs.
+fn lines() -> usize {
+    if std::env::args().any(|argument| argument == "--test") { 1_000 } else { 1_000_000 }
 }
 
 fn front(criterion: &mut Criterion) {
-    let text = long_program(2_000);
-    let lines = text.lines().count() as u64;
+    let text = large::program(lines());
     let mut group = criterion.benchmark_group("front");
-    group.throughput(Throughput::Elements(lines)).sample_size(10);
+    group.throughput(Throughput::Elements(text.lines().count() as u64)).sample_size(10);
     group.bench_function("parse", |bencher| {
         bencher.iter(|| {
             let parsed = obverse_syntax::parse(&text);
@@ -53,8 +21,16 @@ fn front(criterion: &mut Criterion) {
     });
     group.bench_function("compile", |bencher| {
         bencher.iter(|| {
-            let compiled = obverse_compiler::compile("long.obv", &text);
+            let compiled = obverse_compiler::compile("line.obv", &text);
             assert!(compiled.module.is_some(), "{:?}", compiled.diagnostics.first());
+        });
+    });
+    // A slip in each station: what cannot be known before all has been read.
+    let wrong = text.replace("advance insert", "advance isnert");
+    group.bench_function("mistakes", |bencher| {
+        bencher.iter(|| {
+            let compiled = obverse_compiler::compile("line.obv", &wrong);
+            assert!(compiled.module.is_none());
         });
     });
 }

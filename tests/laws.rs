@@ -1,12 +1,13 @@
 //! The laws of the machine over generated modules: there and back, runs are steps, parsimony, write
 //! ahead, barrier, blocks, turns, round trips; those of the formatter and of inversion; those of
 //! compiler and machine together over generated programs, against the reference interpreter; and
-//! that of reach, over both. `LAW_RUNS` sets how many programs each law sees; a failure prints the
-//! number of the program, and `LAW_SEED` runs that one alone.
+//! that of reach, over both and over modules of forks. `LAW_RUNS` sets how many programs each law
+//! sees; a failure prints the number of the program, and `LAW_SEED` runs that one alone.
 
 use arbitrary::{Result, Unstructured};
 use obverse_testkit::{
-    files, format_laws, invert_laws, laws, machine_laws, preflight_laws, reach_laws, word_laws,
+    files, format_laws, front_laws, invert_laws, laws, machine_laws, preflight_laws, reach_laws,
+    word_laws,
 };
 use std::collections::BTreeSet;
 
@@ -15,6 +16,9 @@ const RUNS: u64 = 4_000;
 
 /// How many modules and how many programs the laws of reach see.
 const REACH_RUNS: u64 = 10_000;
+
+/// How many programs the laws of the front end alone see, which are cheap.
+const FRONT_RUNS: u64 = 10_000;
 
 /// Random bytes that follow from a number.
 fn bytes(seed: u64) -> Vec<u8> {
@@ -97,6 +101,11 @@ fn reach_of_programs() {
     holds_of(REACH_RUNS, "reach_of_programs", reach_laws::reach_of_programs, 90);
 }
 
+#[test]
+fn reach_of_forks() {
+    holds_of(REACH_RUNS, "reach_of_forks", reach_laws::reach_of_forks, 25);
+}
+
 /// What is said of points is met, by and by: the verdict is no larger than it needs to be, but for
 /// conditions that are never true.
 #[test]
@@ -111,6 +120,16 @@ fn reach_is_met() {
         said += all.len();
     }
     assert!(met * 100 >= said * 75, "of {said} horizons that points may have, {met} were met");
+}
+
+#[test]
+fn a_program_cut_off_anywhere_gives_messages() {
+    holds_of(FRONT_RUNS, "cut_off_anywhere", front_laws::cut_off_anywhere, 90);
+}
+
+#[test]
+fn line_ends_mean_nothing() {
+    holds("line_ends_mean_nothing", front_laws::line_ends_mean_nothing, 100);
 }
 
 #[test]

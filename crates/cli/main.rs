@@ -32,8 +32,9 @@ Exit codes:
   0  done; for `run`, the program ended with no error pending; for `back`, the run went back
      as far as the program lets it; for `check`, no move is found to fail
   1  the run ended otherwise: an error pending, a fault of the workcell, a trap, the limit;
-     for `check`, a move fails, or the check of the moves could not be done as a whole;
-     for `fmt --check`, a file would change; for `invert`, the sequence has no inverse
+     for `check`, a move fails, the check of the moves could not be done as a whole, or there is
+     a warning that `--deny` names; for `fmt --check`, a file would change; for `invert`, the
+     sequence has no inverse
   2  the input is wrong (command line, source, module, tape, workcell file), and nothing was run;
      or the output cannot be written. With `--json` the last line on standard output is then
      a summary with the outcome `refused`, and the messages";
@@ -76,7 +77,8 @@ impl Command {
             Self::Dis(arguments) => arguments.json,
             Self::Reach(arguments) => arguments.json,
             Self::Tape(arguments) => arguments.json,
-            Self::Check(_) | Self::Isa(_) | Self::Explain(_) => false,
+            Self::Explain(arguments) => arguments.json,
+            Self::Check(_) | Self::Isa(_) => false,
         }
     }
 }

@@ -15,6 +15,9 @@ use std::io::{IsTerminal, Write};
 /// Lines longer than these, in bytes, are not drawn.
 const DRAWN_MAX: usize = 400;
 
+/// What ends a line for the drawing and for nothing else.
+const LINE_ENDS: [char; 2] = ['\u{2028}', '\u{2029}'];
+
 /// Show why a command was not carried out.
 pub(crate) fn problem(problem: &Problem) {
     if let Some(diagnosed) = &problem.source {
@@ -32,7 +35,7 @@ pub(crate) fn diagnostics(diagnosed: &Diagnosed) {
         return;
     }
     let mut shown = Vec::new();
-    let is_terminal = std::io::stderr().is_terminal();
+    let is_coloured = is_coloured(&std::io::stderr());
     let texts = texts(diagnosed);
     let files = Files::of(diagnosed, &texts);
     let mut cache = ariadne::sources(
@@ -40,7 +43,7 @@ pub(crate) fn diagnostics(diagnosed: &Diagnosed) {
     );
     for diagnostic in &diagnosed.diagnostics {
         match files.is_drawn(diagnostic) {
-            true => draw(&files, &mut cache, diagnostic, is_terminal, &mut shown),
+            true => draw(&files, &mut cache, diagnostic, is_coloured, &mut shown),
             false => write_out(&files, diagnostic, &mut shown),
         }
     }
@@ -51,7 +54,11 @@ pub(crate) fn diagnostics(diagnosed: &Diagnosed) {
 /// The files of a program by the name that people know, printable.
 fn texts(diagnosed: &Diagnosed) -> Vec<(String, Cow<'_, str>)> {
     let sources = &diagnosed.sources;
-    let file = |file| (diagnosed.name(file), printable(sources.text(file)));
+    let text = |file| match printable(sources.text(file)) {
+        text if text.contains(LINE_ENDS) => Cow::Owned(text.replace(LINE_ENDS, "???")),
+        text => text,
+    };
+    let file = |file| (diagnosed.name(file), text(file));
     (0..sources.len()).map(file).collect()
 }
 
@@ -106,6 +113,14 @@ pub(crate) fn counted(diagnostics: &[Diagnostic]) -> String {
     total.join(", ")
 }
 
+/// Whether what is written there is coloured: on a terminal that can show it, unless `NO_COLOR` is
+/// set (<https://no-color.org>).
+pub(crate) fn is_coloured(stream: &impl IsTerminal) -> bool {
+    let is_set = |name| std::env::var_os(name).is_some_and(|value| !value.is_empty());
+    let is_dumb = std::env::var_os("TERM").is_some_and(|term| term == "dumb");
+    stream.is_terminal() && !is_set("NO_COLOR") && !is_dumb
+}
+
 fn to_stderr(bytes: &[u8]) {
     // There is nowhere left to say that standard error is closed.
     let _ = std::io::stderr().lock().write_all(bytes);
@@ -150,17 +165,24 @@ fn draw(
     let mut report = Report::build(kind, at(diagnostic.primary.span))
         .with_config(config)
         .with_code(diagnostic.code.as_str())
-        .with_message(&diagnostic.message)
-        .with_label(
-            Label::new(at(diagnostic.primary.span))
-                .with_message(&diagnostic.primary.text)
-                .with_color(main_color)
-                .with_order(-1),
-        );
-    for label in &diagnostic.labels {
-        report = report.with_label(
-            Label::new(at(label.span)).with_message(&label.text).with_color(Color::Blue),
-        );
+        .with_message(&diagnostic.message);
+    let primary = (&diagnostic.primary, main_color);
+    let others = diagnostic.labels.iter().map(|label| (label, Color::Blue));
+    let mut labels: Vec<_> = std::iter::once(primary).chain(others).collect();
+    // The file of the mistake first, and in a file in the order of the text, but what spans lines
+    // last: it is then drawn in one piece.
+    let file = |span: Span| files.sources.locate(span).file;
+    let its_file = file(diagnostic.primary.span);
+    let spans_lines = |span: Span| {
+        let text = files.sources.whole().get(span.start as usize..span.end as usize);
+        text.is_some_and(|text| text.contains('\n'))
+    };
+    labels.sort_by_key(|(label, _)| {
+        (file(label.span) != its_file, spans_lines(label.span), label.span.start)
+    });
+    for (label, color) in labels {
+        let drawn = Label::new(at(label.span)).with_message(&label.text);
+        report = report.with_label(drawn.with_color(color));
     }
     for note in &diagnostic.notes {
         report = report.with_note(note);
@@ -204,6 +226,16 @@ pub(crate) fn diagnostics_json(diagnosed: &Diagnosed) -> Vec<Value> {
         object["labels"] = labels.collect();
         object["notes"] = json!(diagnostic.notes);
         object["help"] = json!(diagnostic.help);
+        object["suggestion"] = match &diagnostic.suggestion {
+            Some(suggestion) => {
+                let mut change = label(suggestion.span, &suggestion.text);
+                let Place { span, .. } = sources.locate(suggestion.span);
+                change["start_byte"] = json!(span.start);
+                change["end_byte"] = json!(span.end);
+                change
+            }
+            None => Value::Null,
+        };
         object
     };
     diagnosed.diagnostics.iter().map(object).collect()
@@ -227,6 +259,7 @@ fn message_json(message: &Message) -> Value {
         "labels": labels,
         "notes": [],
         "help": null,
+        "suggestion": null,
     })
 }
 

@@ -86,6 +86,53 @@ fn check_tells_machines_every_diagnostic_with_its_places() {
 }
 
 #[test]
+fn check_lets_no_warning_pass_that_is_denied() {
+    let bench = Bench::new("check_deny");
+    bench.write("w.obv", "var spare = 1\nsequence main {\n  wait 1 s\n}\n");
+    for what in ["warnings", "W0001", "w0001"] {
+        let ran = bench.ends(1, &["check", "--deny", what, "w.obv"]);
+        assert!(ran.stdout.contains("1 warning that is not let pass"), "{}", ran.stdout);
+    }
+    bench.ends(0, &["check", "--deny", "W0002", "w.obv"]);
+    let summary = bench.ends(1, &["check", "--deny", "warnings", "--json", "w.obv"]).summary();
+    assert_eq!((&summary["outcome"], &summary["denied"]), (&json!("denied"), &json!(1)));
+    let said = bench.ends(2, &["check", "--deny", "waring", "w.obv"]).stderr;
+    assert!(said.contains("did you mean `warnings`?"), "{said}");
+    bench.write("a.obv", "allow W0001 \"kept\" var spare = 1\nsequence main {\n  wait 1 s\n}\n");
+    bench.ends(0, &["check", "--deny", "warnings", "a.obv"]);
+}
+
+#[test]
+fn check_tells_machines_the_change_that_mends() {
+    let bench = Bench::new("check_suggestion");
+    bench.write("s.obv", "joints home = [0, 0, 0, 0, 0, 0] deg\nsequence main { move to hoem }\n");
+    let lines = bench.ends(2, &["check", "--json", "s.obv"]).json();
+    let change = &lines[0]["suggestion"];
+    assert_eq!((&change["line"], &change["column"]), (&json!(2), &json!(25)));
+    assert_eq!((&change["end_column"], &change["text"]), (&json!(29), &json!("home")));
+    assert_eq!((&change["start_byte"], &change["end_byte"]), (&json!(61), &json!(65)));
+}
+
+#[test]
+fn nothing_is_coloured_that_is_no_terminal() {
+    let bench = Bench::new("check_colours");
+    bench.write("c.obv", "sequence main { move to nowhere }\n");
+    assert!(!bench.ends(2, &["check", "c.obv"]).stderr.contains('\u{1b}'));
+}
+
+#[test]
+fn explain_lists_the_codes() {
+    let bench = Bench::new("explain_all");
+    let listed = bench.ends(0, &["explain"]).stdout;
+    assert!(listed.contains("W0001  something that is never used\n"), "{listed}");
+    let told = bench.ends(0, &["explain", "--json"]).json();
+    assert_eq!(told.len(), listed.lines().count() + 1);
+    let code = bench.ends(0, &["explain", "--json", "e0101"]).json();
+    assert_eq!((&code[0]["code"], &code[1]["type"]), (&json!("E0101"), &json!("summary")));
+    assert!(code[0]["wrong"].as_str().is_some_and(|wrong| wrong.contains("move to start")));
+}
+
+#[test]
 fn run_tells_the_story() {
     let bench = Bench::new("run");
     let story = bench.ends(0, &["run", "bad_pin.obv", "--seed", "1"]).stdout;

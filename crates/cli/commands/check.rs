@@ -6,6 +6,7 @@ use crate::load::{self, Program};
 use crate::problem::Problem;
 use crate::{Outcome, moves, show, write};
 use obverse_preflight::Report;
+use obverse_syntax::codes::Code;
 use obverse_syntax::diagnostic::{Diagnostic, Severity};
 use serde_json::json;
 use std::path::PathBuf;
@@ -21,6 +22,9 @@ pub(crate) struct Arguments {
     /// Let a move that is not known before running fail the check, too.
     #[arg(long)]
     strict: bool,
+    /// Warnings that are not let pass: `warnings` for all of them, or the code of one.
+    #[arg(long, value_name = "WHAT", value_parser = denied)]
+    deny: Vec<Denied>,
     /// For machines: JSON Lines, an object a diagnostic and one a move, a summary last.
     #[arg(long)]
     json: bool,
@@ -45,6 +49,48 @@ struct Checked {
     program: Program,
     cell_name: String,
     report: Report,
+    /// How many of the warnings are not let pass.
+    denied: usize,
+}
+
+/// Warnings that are not let pass.
+#[derive(Clone, Copy, Debug)]
+enum Denied {
+    /// All.
+    All,
+    /// Those of a code.
+    Of(Code),
+}
+
+fn denied(word: &str) -> std::result::Result<Denied, String> {
+    if word == "warnings" {
+        return Ok(Denied::All);
+    }
+    let warnings = Code::ALL.iter().filter(|code| code.as_str().starts_with('W'));
+    match word.parse::<Code>() {
+        Ok(code) if code.as_str().starts_with('W') => Ok(Denied::Of(code)),
+        Ok(_) => Err("this is an error, which is never let pass".to_owned()),
+        Err(_) => {
+            let words = warnings.map(|code| code.as_str()).chain(["warnings"]);
+            Err(obverse_syntax::nearest(word, words).map_or_else(
+                || "write `warnings`, or the code of one, such as W0001".to_owned(),
+                |near| format!("did you mean `{near}`?"),
+            ))
+        }
+    }
+}
+
+impl Arguments {
+    /// How many of the warnings are not let pass.
+    fn denied(&self, warnings: &[Diagnostic]) -> usize {
+        let is_denied = |warning: &&Diagnostic| {
+            self.deny.iter().any(|denied| match denied {
+                Denied::All => true,
+                Denied::Of(code) => *code == warning.code,
+            })
+        };
+        warnings.iter().filter(is_denied).count()
+    }
 }
 
 pub(crate) fn run(arguments: &Arguments) -> Result {
@@ -64,13 +110,22 @@ pub(crate) fn run(arguments: &Arguments) -> Result {
         checked.cell_name,
     ));
     moves::tell(module, &checked.report);
-    Ok(outcome(arguments, &checked.report))
+    if checked.denied > 0 {
+        let words = if checked.denied == 1 { "warning that is" } else { "warnings that are" };
+        let (file, count) = (arguments.file.display(), checked.denied);
+        write::line(&format!("{file}: {count} {words} not let pass"));
+    }
+    Ok(outcome(arguments, &checked).1)
 }
 
-fn outcome(arguments: &Arguments, report: &Report) -> Outcome {
-    match report.is_fine(arguments.strict) {
-        true => Outcome::Done,
-        false => Outcome::EndedOtherwise,
+/// What it comes to, in a word for machines, and as an exit code.
+fn outcome(arguments: &Arguments, checked: &Checked) -> (&'static str, Outcome) {
+    if !checked.report.is_fine(arguments.strict) {
+        ("moves_fail", Outcome::EndedOtherwise)
+    } else if checked.denied > 0 {
+        ("denied", Outcome::EndedOtherwise)
+    } else {
+        ("correct", Outcome::Done)
     }
 }
 
@@ -82,7 +137,8 @@ fn in_its_cell(arguments: &Arguments, program: Program) -> std::result::Result<C
     let report = obverse_preflight::check(&program.verified, cell.cell()).map_err(|errors| {
         Problem::new(errors.iter().map(ToString::to_string).collect::<Vec<_>>().join("; "))
     })?;
-    Ok(Checked { program, cell_name: file.name, report })
+    let denied = arguments.denied(warnings_of(&program));
+    Ok(Checked { program, cell_name: file.name, report, denied })
 }
 
 fn warnings_of(program: &Program) -> &[Diagnostic] {
@@ -108,10 +164,7 @@ fn as_json(arguments: &Arguments) -> Result {
             summary["workcell"] = json!(checked.cell_name);
             summary["moves"] = moves::counts_for_machines(&checked.report);
             summary["complete"] = json!(checked.report.is_complete);
-            match outcome(arguments, &checked.report) {
-                Outcome::Done => ("correct", Outcome::Done),
-                otherwise => ("moves_fail", otherwise),
-            }
+            outcome(arguments, checked)
         }
         Err(problem) => {
             let all = show::problem_json(problem);
@@ -127,6 +180,7 @@ fn as_json(arguments: &Arguments) -> Result {
     summary["outcome"] = json!(words);
     summary["errors"] = json!(errors);
     summary["warnings"] = json!(warnings);
+    summary["denied"] = json!(checked.as_ref().map_or(0, |checked| checked.denied));
     write::line(&summary.to_string());
     Ok(outcome)
 }

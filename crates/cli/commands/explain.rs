@@ -6,18 +6,29 @@ use crate::{Outcome, write};
 use obverse_isa::{OPS, Opcode, reference};
 use obverse_preflight::Reason;
 use obverse_syntax::codes::Code;
+use serde_json::{Value, json};
 
 /// How wide prose is set.
 const COLUMNS: usize = 80;
 
 #[derive(clap::Args)]
 pub(crate) struct Arguments {
-    /// A mnemonic such as `move.joint`, or a code such as `E0201` or `P0501`.
-    word: String,
+    /// A mnemonic such as `move.joint`, or a code such as `E0201` or `P0501`; without one, the
+    /// codes are listed.
+    word: Option<String>,
+    /// For machines: JSON Lines, an object a code or opcode and a summary last.
+    #[arg(long)]
+    pub(crate) json: bool,
 }
 
 pub(crate) fn run(arguments: &Arguments) -> Result {
-    let word = arguments.word.trim();
+    let Some(word) = arguments.word.as_deref().map(str::trim) else {
+        list(arguments.json);
+        return Ok(Outcome::Done);
+    };
+    if arguments.json {
+        return as_json(word);
+    }
     if let Some(opcode) = Opcode::from_mnemonic(&word.to_lowercase()) {
         write::out(&set(&reference::explain(opcode.info())));
         return Ok(Outcome::Done);
@@ -30,18 +41,83 @@ pub(crate) fn run(arguments: &Arguments) -> Result {
         write::out(&set(reason.explanation()));
         return Ok(Outcome::Done);
     }
+    Err(unknown(word))
+}
+
+/// Every code of a diagnostic and of a reason with its title, a line each.
+fn list(is_json: bool) {
+    if is_json {
+        let codes = Code::ALL.iter().map(|code| of_code(*code));
+        tell(codes.chain(Reason::ALL.iter().map(|reason| of_reason(*reason))));
+        return;
+    }
+    for code in Code::ALL {
+        write::line(&format!("{code}  {}", code.title()));
+    }
+    for reason in Reason::ALL {
+        write::line(&format!("{}  {}", reason.code(), reason.title()));
+    }
+}
+
+fn as_json(word: &str) -> Result {
+    if let Some(opcode) = Opcode::from_mnemonic(&word.to_lowercase()) {
+        let row = opcode.info();
+        tell(std::iter::once(json!({
+            "type": "opcode",
+            "mnemonic": row.mnemonic,
+            "class": row.class.name(),
+            "explanation": reference::explain(row),
+        })));
+        return Ok(Outcome::Done);
+    }
+    if let Ok(reason) = word.parse::<Reason>() {
+        tell(std::iter::once(of_reason(reason)));
+        return Ok(Outcome::Done);
+    }
+    let code: Code = word.parse().map_err(|_| unknown(word))?;
+    tell(std::iter::once(of_code(code)));
+    Ok(Outcome::Done)
+}
+
+fn of_code(code: Code) -> Value {
+    json!({
+        "type": "code",
+        "code": code.as_str(),
+        "title": code.title(),
+        "explanation": code.explanation(),
+        "wrong": code.wrong_example(),
+        "right": code.right_example(),
+    })
+}
+
+fn of_reason(reason: Reason) -> Value {
+    json!({
+        "type": "reason",
+        "code": reason.code(),
+        "title": reason.title(),
+        "explanation": reason.explanation(),
+    })
+}
+
+fn tell(objects: impl Iterator<Item = Value>) {
+    let mut count = 0;
+    for object in objects {
+        write::line(&object.to_string());
+        count += 1;
+    }
+    write::line(&json!({ "type": "summary", "outcome": "done", "explained": count }).to_string());
+}
+
+fn unknown(word: &str) -> Problem {
     let codes = Code::ALL.iter().map(|code| code.as_str());
     let reasons = Reason::ALL.iter().map(|reason| reason.code());
     let words = OPS.iter().map(|row| row.mnemonic).chain(codes).chain(reasons);
     let near = obverse_syntax::nearest(word, words);
     let hint = near.map_or_else(
-        || {
-            "`obverse isa` lists the opcodes, and diagnostics and checks show their codes"
-                .to_owned()
-        },
+        || "`obverse isa` lists the opcodes, and `obverse explain` the codes".to_owned(),
         |near| format!("did you mean `{near}`?"),
     );
-    Err(Problem::new(format!("`{word}` is neither an opcode nor a code; {hint}")))
+    Problem::new(format!("`{word}` is neither an opcode nor a code; {hint}"))
 }
 
 /// The lines of a text, broken between words where they are too long.

@@ -7,6 +7,7 @@
 //! sequence its inverse. Knows nothing of machines and robots; the parser is
 //! `obverse-syntax`.
 
+mod allow;
 mod check;
 mod effects;
 mod fold;
@@ -17,6 +18,7 @@ mod load;
 mod lower;
 mod merge;
 mod path;
+mod reached;
 mod recursion;
 mod report;
 mod response;
@@ -29,6 +31,7 @@ mod uses;
 
 pub use load::{Loader, MAX_IMPORT_DEPTH, MAX_IMPORTED};
 
+use allow::Allows;
 use effects::Effects;
 use load::Loaded;
 use obverse_bytecode::Module;
@@ -69,7 +72,7 @@ fn compile_loaded(loaded: &Loaded) -> (Option<Module>, Vec<Diagnostic>) {
     let sources = &loaded.sources;
     let parsed = merge::parse(loaded);
     let is_whole = parsed.diagnostics.iter().all(|found| found.severity != Severity::Error);
-    let reports = Reports::new(is_whole);
+    let reports = Reports::new(is_whole, Allows::of(sources, &parsed.program));
     let (program, mut reports) = check::check(sources, &parsed.program, reports);
     let module = program.filter(|_| is_whole).and_then(|program| {
         let effects = Effects::of(&program);
@@ -84,6 +87,7 @@ fn compile_loaded(loaded: &Loaded) -> (Option<Module>, Vec<Diagnostic>) {
     if let Some(module) = &module {
         shortfall::check(sources, &parsed.program, module, &mut reports);
     }
+    reports.warn_of_useless();
     let mut diagnostics = parsed.diagnostics;
     diagnostics.extend(reports.into_diagnostics());
     diagnostics.sort_by_key(|diagnostic| diagnostic.primary.span);

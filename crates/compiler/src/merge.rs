@@ -40,6 +40,7 @@ fn put<'s>(
                 if let Some(&imported) = loaded.imported.get(&path.span.start) {
                     put(imported, loaded, files, program);
                 }
+                program.items.push(Item::Import(path));
             }
             item => program.items.push(item),
         }

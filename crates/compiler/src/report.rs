@@ -1,5 +1,6 @@
 //! Where what is wrong with a program is gathered. Knows nothing of what can be wrong.
 
+use crate::allow::Allows;
 use obverse_syntax::codes::Code;
 use obverse_syntax::diagnostic::{Diagnostic, Severity};
 use obverse_syntax::span::Span;
@@ -17,6 +18,7 @@ pub(crate) struct Reports {
     errors: Vec<Diagnostic>,
     warnings: Vec<Diagnostic>,
     is_whole: bool,
+    allows: Allows,
     compared: usize,
 }
 
@@ -35,14 +37,20 @@ const OF_ABSENCE: [Code; 9] = [
 
 impl Reports {
     /// Nothing yet. If the tree is not whole, what its missing parts may have caused is not kept.
-    pub(crate) fn new(is_whole: bool) -> Self {
-        Self { errors: Vec::new(), warnings: Vec::new(), is_whole, compared: 0 }
+    pub(crate) fn new(is_whole: bool, mut allows: Allows) -> Self {
+        let errors = allows.take_mistakes();
+        Self { errors, warnings: Vec::new(), is_whole, allows, compared: 0 }
     }
 
     /// Keep a diagnostic.
     pub(crate) fn add(&mut self, diagnostic: Diagnostic) {
         let is_warning = diagnostic.severity == Severity::Warning;
         if !self.is_whole && (is_warning || OF_ABSENCE.contains(&diagnostic.code)) {
+            return;
+        }
+        let is_meant =
+            is_warning && self.allows.permits(diagnostic.code, diagnostic.primary.span.start);
+        if is_meant {
             return;
         }
         let kept = if is_warning { &mut self.warnings } else { &mut self.errors };
@@ -73,6 +81,15 @@ impl Reports {
         let budget = MAX_COMPARED.saturating_sub(self.compared);
         let compared = &mut self.compared;
         obverse_syntax::nearest(word, words.take(budget).inspect(|_| *compared += 1))
+    }
+
+    /// Warn of each `allow` that allows nothing, now that all warnings have come. With a mistake
+    /// in the program not all of them have.
+    pub(crate) fn warn_of_useless(&mut self) {
+        if self.is_whole && !self.has_errors() {
+            let useless = self.allows.useless();
+            useless.into_iter().for_each(|diagnostic| self.add(diagnostic));
+        }
     }
 
     /// All of them.

@@ -39,6 +39,21 @@ pub enum Item<'s> {
     Variable(VariableDeclaration<'s>),
     /// `sequence main { … }`, or `action pick(part: item) { … }`
     Sequence(Sequence<'s>),
+    /// `allow W0001 "why"`: for the declaration that follows.
+    Allow(Allow<'s>),
+}
+
+/// A warning that is meant.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Allow<'s> {
+    /// The code of the warning, as written.
+    pub code: Name<'s>,
+    /// `in file`: wherever it stands in the file, not only in what follows.
+    pub in_file: bool,
+    /// Why it is meant.
+    pub reason: Spanned<&'s str>,
+    /// The whole of it.
+    pub span: Span,
 }
 
 /// A name for a line of the workcell: an entry of an I/O map.
@@ -597,6 +612,73 @@ pub enum StatementKind<'s> {
     },
     /// `throw NAME`
     Throw(Name<'s>),
+    /// `allow W0001 "why"`: for the statement that follows.
+    Allow(Allow<'s>),
+}
+
+/// The blocks of a kind of statement, to be read or to be changed.
+macro_rules! blocks_of {
+    ($kind:expr, $iter:ident) => {
+        match $kind {
+            StatementKind::If { then, otherwise, .. } => {
+                std::iter::once(then).chain(otherwise.$iter()).collect()
+            }
+            StatementKind::WaitUntil { otherwise, .. } => otherwise.$iter().collect(),
+            StatementKind::While { body, .. }
+            | StatementKind::Repeat { body, .. }
+            | StatementKind::For { body, .. }
+            | StatementKind::Loop(body) => vec![body],
+            StatementKind::Speed { block, .. } | StatementKind::Tool { block, .. } => {
+                block.$iter().collect()
+            }
+            StatementKind::Fork(branches) => branches.$iter().collect(),
+            StatementKind::Irreversible { block, .. }
+            | StatementKind::SkipInReverse(block)
+            | StatementKind::KeepInReverse(block)
+            | StatementKind::WithInReverse { block, .. } => vec![block],
+            StatementKind::ReplaceInReverse { block, replacement } => {
+                vec![block, replacement]
+            }
+            StatementKind::Move { .. }
+            | StatementKind::Advance(_)
+            | StatementKind::Call { .. }
+            | StatementKind::Io(_)
+            | StatementKind::Wait(_)
+            | StatementKind::Primitive(_)
+            | StatementKind::Variable(_)
+            | StatementKind::Remember(_)
+            | StatementKind::Assign { .. }
+            | StatementKind::Break
+            | StatementKind::Return
+            | StatementKind::Checkpoint(_)
+            | StatementKind::Barrier(_)
+            | StatementKind::Throw(_)
+            | StatementKind::Allow(_) => Vec::new(),
+        }
+    };
+}
+
+impl<'s> Statement<'s> {
+    /// What it allows, if that is all that it does.
+    #[must_use]
+    pub fn allow(&self) -> Option<&Allow<'s>> {
+        match &self.kind {
+            StatementKind::Allow(allow) => Some(allow),
+            _ => None,
+        }
+    }
+
+    /// The blocks in it, in the order of the text.
+    #[must_use]
+    pub fn blocks(&self) -> Vec<&Block<'s>> {
+        blocks_of!(&self.kind, iter)
+    }
+
+    /// The same, to be changed.
+    #[must_use]
+    pub fn blocks_mut(&mut self) -> Vec<&mut Block<'s>> {
+        blocks_of!(&mut self.kind, iter_mut)
+    }
 }
 
 /// What may be otherwise going back.

@@ -20,6 +20,15 @@ pub struct Label {
     pub text: String,
 }
 
+/// A change of the text that mends what is wrong.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Suggestion {
+    /// What is replaced; where it is empty, the text is put in there.
+    pub span: Span,
+    /// What takes its place; where it is empty, the span is taken out.
+    pub text: String,
+}
+
 /// Something wrong with a source text.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Diagnostic {
@@ -37,6 +46,8 @@ pub struct Diagnostic {
     pub notes: Vec<String>,
     /// What to do.
     pub help: Option<String>,
+    /// The change of the text that does it, where there is one plain one.
+    pub suggestion: Option<Suggestion>,
 }
 
 impl Diagnostic {
@@ -55,6 +66,7 @@ impl Diagnostic {
             labels: Vec::new(),
             notes: Vec::new(),
             help: None,
+            suggestion: None,
         }
     }
 
@@ -76,6 +88,25 @@ impl Diagnostic {
     #[must_use]
     pub fn with_help(mut self, help: impl Into<String>) -> Self {
         self.help = Some(help.into());
+        self
+    }
+
+    /// With the word that was probably meant in place of another.
+    #[must_use]
+    pub fn did_you_mean(self, span: Span, meant: &str) -> Self {
+        self.with_help(format!("did you mean `{meant}`?")).replacing(span, meant)
+    }
+
+    /// With what is to be written in place of a span.
+    #[must_use]
+    pub fn write_instead(self, span: Span, text: &str) -> Self {
+        self.with_help(format!("write `{text}`")).replacing(span, text)
+    }
+
+    /// With the change of the text that does what the help says.
+    #[must_use]
+    pub fn replacing(mut self, span: Span, text: impl Into<String>) -> Self {
+        self.suggestion = Some(Suggestion { span, text: text.into() });
         self
     }
 }

@@ -34,7 +34,7 @@ pub(crate) fn read(beginning: &str, rest: &str) -> Foreign {
             let closing = line.find(|c| is_typographic_quote(c) || c == '"').map(after_quote);
             Foreign { length: closing.unwrap_or(line.len()), meant: Some(Token::Text) }
         }
-        Some('#') => Foreign { length: line.len(), meant: None },
+        Some('#' | '$') => Foreign { length: line.len(), meant: None },
         Some(c) if c.is_alphanumeric() => {
             Foreign { length: word_length(line), meant: Some(Token::Name) }
         }
@@ -79,7 +79,7 @@ pub(crate) fn foreign_word(word: &str, span: Span) -> Diagnostic {
             .with_note("names are made of the letters a to z and A to Z, digits and `_`");
     let spelled: Option<String> = word.chars().map(spelling).collect();
     match spelled {
-        Some(spelled) => diagnostic.with_help(format!("write `{spelled}`")),
+        Some(spelled) => diagnostic.write_instead(span, &spelled),
         None => diagnostic,
     }
 }
@@ -120,19 +120,26 @@ pub(crate) fn diagnostic(text: &str, span: Span) -> Diagnostic {
     if is_typographic_quote(c) {
         let inner = text.trim_matches(|c| is_typographic_quote(c) || c == '"');
         return error(format!("{} is a typographic quote", named(c)), "not a text")
-            .with_help(format!("write \"{inner}\" with straight quotes"));
+            .with_help(format!("write \"{inner}\" with straight quotes"))
+            .replacing(span, format!("\"{inner}\""));
     }
     if c.is_alphanumeric() {
         return foreign_word(text, span);
     }
     if c.is_whitespace() || matches!(c, '\u{200B}'..='\u{200F}' | '\u{2060}' | '\u{FEFF}') {
         return error(format!("{} is an invisible character", named(c)), "invisible")
-            .with_help("write a plain blank, or nothing");
+            .with_help("write a plain blank, or nothing")
+            .replacing(span, " ");
     }
     let diagnostic = error(format!("{} means nothing here", named(c)), "no part of the language");
     match instead_of(c) {
-        Some(("//", _)) => diagnostic.with_help("a comment begins with `//`"),
-        Some((instead, _)) => diagnostic.with_help(format!("write `{instead}`")),
+        Some(("//", _)) => diagnostic
+            .with_help("a comment begins with `//`")
+            .replacing(Span::new(span.start, span.start + 1), "//"),
+        Some((instead, _)) => diagnostic.write_instead(span, instead),
+        None if c == '$' => {
+            diagnostic.with_help("write `set 1 high` for an output, and `input 1` for an input")
+        }
         None => diagnostic,
     }
 }

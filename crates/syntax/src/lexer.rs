@@ -2,14 +2,17 @@
 //! words told from others, what is foreign reported and replaced, what is too deep refused. It
 //! knows the text around a token, and nothing of the grammar.
 
+use crate::ahead::{ascii_word_length, degree_sign, is_before_assignment, unit_length};
 use crate::codes::Code;
-use crate::diagnostic::Diagnostic;
+use crate::diagnostic::{Diagnostic, Suggestion};
 use crate::foreign;
+use crate::habits::{self, Habit, Then};
 use crate::nesting::{Nesting, Refusal};
 use crate::sink::{MAX_IDLE_TOKENS, Sink, Stopped};
 use crate::span::Span;
 use crate::surroundings::Surroundings;
-use crate::token::{Token, UNITS};
+use crate::token::Token;
+use crate::tree;
 use crate::{MAX_NESTING, MAX_OPERATORS};
 use logos::Logos;
 
@@ -26,6 +29,14 @@ pub(crate) struct Lexer<'s, 'k> {
     previous_end: usize,
     /// Whether the text has ended with blocks open.
     has_ended: bool,
+    /// A token that follows the one in hand and is not written: the `if` of `elif`.
+    pending: Option<Token>,
+    /// Blocks of another language that are open.
+    foreign_blocks: u32,
+    /// Whether a name has stood where only a statement can.
+    has_stray_word: bool,
+    /// The word of the declaration whose clauses are being read, and the braces open in it.
+    clauses: Option<(Token, u32)>,
 }
 
 impl<'s, 'k> Lexer<'s, 'k> {
@@ -35,18 +46,20 @@ impl<'s, 'k> Lexer<'s, 'k> {
         let has_mark = source.get(start..).is_some_and(|text| text.starts_with('\u{FEFF}'));
         tokens.bump(start + if has_mark { '\u{FEFF}'.len_utf8() } else { 0 });
         let nesting = Nesting::default();
-        let (before_previous, previous) = (Token::Semicolon, Token::Semicolon);
-        let (previous_end, has_ended) = (start, false);
         Self {
             source,
             start,
             tokens,
             sink,
             nesting,
-            before_previous,
-            previous,
-            previous_end,
-            has_ended,
+            before_previous: Token::Semicolon,
+            previous: Token::Semicolon,
+            previous_end: start,
+            has_ended: false,
+            pending: None,
+            foreign_blocks: 0,
+            has_stray_word: false,
+            clauses: None,
         }
     }
 
@@ -56,6 +69,10 @@ impl<'s, 'k> Lexer<'s, 'k> {
         match token {
             Token::Integer | Token::Real => Some(self.number(token)),
             Token::MalformedNumber => Some(self.malformed_number()),
+            Token::Name if self.begins_statement() => self.first_word(),
+            Token::Name if self.is_step() => self.step(),
+            _ if self.is_astray(token) => Some(Token::Name),
+            _ if token.begins_statement() => self.statement_word(token),
             _ if token.is_word() => Some(self.word(token)),
             Token::UnclosedText => {
                 self.report(Code::UnterminatedString, "this text is not closed", |_| {
@@ -94,8 +111,182 @@ impl<'s, 'k> Lexer<'s, 'k> {
         };
         let meant_text = meant.text().unwrap_or_default();
         let message = format!("`{}` is not an operator here", self.tokens.slice());
-        self.report(Code::ForeignOperator, &message, |_| Some(format!("write `{meant_text}`")));
+        let diagnostic = Diagnostic::error(
+            Code::ForeignOperator,
+            self.span(),
+            message,
+            Code::ForeignOperator.title(),
+        );
+        let after = if token == Token::ForeignNot { " " } else { "" };
+        self.sink.report(
+            diagnostic
+                .with_help(format!("write `{meant_text}`"))
+                .replacing(self.span(), format!("{meant_text}{after}")),
+        );
         meant
+    }
+
+    /// A word that begins a statement, which clauses are none.
+    fn statement_word(&mut self, token: Token) -> Option<Token> {
+        use Token::{Distance, Io, Move, Set, Sleep, Toggle, Wait};
+        let Some((of, 1)) = self.clauses.filter(|_| self.begins_statement()) else {
+            return Some(self.word(token));
+        };
+        let (meant, why) = match (of, token) {
+            (Io, Set | Toggle | Sleep) => return Some(token),
+            (Io, Wait) => (Some(Sleep), "an I/O operation waits by `sleep`"),
+            (Io, _) => (None, "an I/O operation has `set`, `toggle` and `sleep`"),
+            (Move, Move) => (Some(Distance), "an advanced move says its motion by `distance`"),
+            (Move, _) => (
+                None,
+                "what an advanced move does afterwards stands in `on success { .. }` \
+                                 and `on failure { .. }`",
+            ),
+            _ => (None, "what the robot does stands in a sequence"),
+        };
+        let message = format!("`{}` is no clause", self.tokens.slice());
+        let span = self.span();
+        let error = Diagnostic::error(Code::UnexpectedToken, span, message, "not a clause");
+        if let Some(meant) = meant {
+            let instead = meant.text().unwrap_or_default();
+            self.sink.report(error.with_note(why).write_instead(span, instead));
+            return Some(meant);
+        }
+        self.sink.report(error.with_help(why));
+        let rest = self.rest();
+        self.leave_out(&rest[..rest.find(['\r', '\n']).unwrap_or(rest.len())], None)
+    }
+
+    /// Whether a word that begins a declaration or a statement stands in a clause where it can only
+    /// be a mistake. As a name it lets the parser go on with the next clause.
+    fn is_astray(&self, token: Token) -> bool {
+        self.clauses.is_some()
+            && match token {
+                Token::Input | Token::Output => self.previous == Token::Name,
+                Token::With => self.previous != Token::Repeat,
+                _ => false,
+            }
+    }
+
+    /// Takes note of the braces of declarations that have clauses.
+    fn follow_clauses(&mut self, token: Token) {
+        self.clauses = match (token, self.clauses) {
+            (Token::OpenBrace, Some((of, open))) => Some((of, open + 1)),
+            (Token::OpenBrace, None) => match self.before_previous {
+                of @ (Token::Error | Token::Move | Token::Item | Token::Io)
+                    if self.previous.is_word() && !self.previous.is_reserved() =>
+                {
+                    Some((of, 1))
+                }
+                _ => None,
+            },
+            (Token::CloseBrace, Some((of, open))) if open > 1 => Some((of, open - 1)),
+            (Token::CloseBrace, _) => None,
+            (_, clauses) => clauses,
+        };
+    }
+
+    /// A name where a statement may begin: an assignment, or what another language begins one with.
+    fn first_word(&mut self) -> Option<Token> {
+        let (word, rest) = (self.tokens.slice(), self.rest());
+        if is_before_assignment(rest) || rest.starts_with(|c: char| !c.is_ascii()) {
+            return Some(self.word(Token::Name));
+        }
+        let line = &rest[..rest.find(['\r', '\n']).unwrap_or(rest.len())];
+        let goes_on = self.foreign_blocks > 0 && word.eq_ignore_ascii_case("else");
+        if goes_on || habits::ends_block(word) {
+            let is_awaited = self.foreign_blocks > 0;
+            self.foreign_blocks -= u32::from(is_awaited && !goes_on);
+            let habit = (!is_awaited).then(habits::end_of_block);
+            return self.leave_out(line, habit.as_ref());
+        }
+        let Some(habit) = habits::of(word, line) else {
+            // It can only be a mistake; after an earlier one the parser goes on here.
+            if !std::mem::replace(&mut self.has_stray_word, true) {
+                return Some(self.word(Token::Name));
+            }
+            self.pending = Some(Token::Name);
+            return Some(Token::Semicolon);
+        };
+        match habit.then {
+            Then::NextLine => self.leave_out(line, Some(&habit)),
+            Then::InBlock => {
+                self.foreign_blocks += 1;
+                self.leave_out(line, Some(&habit))
+            }
+            Then::As(first, second) => {
+                self.report_habit(word.len(), &habit);
+                self.pending = second;
+                Some(first)
+            }
+        }
+    }
+
+    /// Leave the rest of a line out, as far as a brace or a comment.
+    fn leave_out(&mut self, line: &str, habit: Option<&Habit>) -> Option<Token> {
+        let end = line.find(['{', '}']).unwrap_or(line.len());
+        let end = line.find("//").map_or(end, |comment| comment.min(end));
+        if let Some(habit) = habit {
+            let written = line[..end].trim_end().trim_end_matches(';');
+            self.report_habit(self.tokens.slice().len() + written.len(), habit);
+        }
+        self.tokens.bump(end);
+        if line[end..].is_empty() || line[end..].starts_with("//") {
+            self.sink.line_ends();
+        }
+        self.previous = Token::Semicolon;
+        self.previous_end = self.tokens.span().end;
+        None
+    }
+
+    /// A word of another language, and so many bytes from its beginning.
+    fn report_habit(&self, length: usize, habit: &Habit) {
+        let start = self.span().start;
+        let span = Span::new(start, start + length as u32);
+        let word = self.tokens.slice();
+        let is_capital =
+            habit.instead.as_ref().is_some_and(|instead| word.eq_ignore_ascii_case(instead));
+        let message = match is_capital {
+            true => format!("`{word}` is not written with capitals here"),
+            false => format!("`{word}` is a word of another language"),
+        };
+        let at = "not a statement of this language";
+        let mut diagnostic = Diagnostic::error(Code::ForeignWord, span, message, at);
+        diagnostic.help = Some(habit.help.clone());
+        diagnostic.suggestion = habit.instead.clone().map(|text| Suggestion { span, text });
+        self.sink.report(diagnostic);
+    }
+
+    /// Whether a statement may begin with a name here, seen from the text alone: after a brace or
+    /// `;`, or on a new line after what can end a statement and wants no name.
+    fn begins_statement(&self) -> bool {
+        let is_new =
+            matches!(self.previous, Token::OpenBrace | Token::CloseBrace | Token::Semicolon);
+        let is_name = self.previous.is_free() && self.before_previous.wants_name();
+        // `++` is of no expression here.
+        let is_step = (self.before_previous, self.previous) == (Token::Plus, Token::Plus);
+        let is_over = is_name || is_step || self.previous.ends_statement();
+        is_new || is_over && !self.is_same_line() && !self.nesting.is_in_expression()
+    }
+
+    /// `for i from 0 to last step 2 {`: left out as far as the block.
+    fn step(&mut self) -> Option<Token> {
+        self.sink.report(tree::step(self.span()));
+        let rest = self.rest();
+        let end = rest.find(['{', '\r', '\n']).unwrap_or(rest.len());
+        self.tokens.bump(end);
+        self.sink.line_ends();
+        None
+    }
+
+    /// Whether a name cannot be what another language gives a loop's step by.
+    fn is_step(&self) -> bool {
+        let follows =
+            matches!(self.previous, Token::Name | Token::Integer | Token::CloseParenthesis);
+        self.tokens.slice() == "step"
+            && follows
+            && self.is_same_line()
+            && !is_before_assignment(self.rest())
     }
 
     fn word(&mut self, token: Token) -> Token {
@@ -111,35 +302,46 @@ impl<'s, 'k> Lexer<'s, 'k> {
         if token.is_reserved() {
             return token;
         }
-        if is_before_assignment(self.rest()) {
+        if is_before_assignment(self.rest()) && self.clauses.is_none() {
             let is_operand = self.nesting.is_in_expression()
                 || self.previous.wants_operand(self.before_previous) && self.is_same_line();
             return if is_operand { token } else { Token::Assigned };
         }
         if self.previous == Token::CloseBracket && token == Token::Name && self.is_same_line() {
-            return self.unit(token);
+            return self.unit();
         }
         token
     }
 
     /// A word after `]`.
-    fn unit(&mut self, token: Token) -> Token {
+    fn unit(&mut self) -> Token {
         let from_word = self.source.get(self.tokens.span().start..).unwrap_or("");
         match unit_length(from_word) {
             Some(length) => {
                 self.tokens.bump(length - self.tokens.slice().len());
                 Token::Unit
             }
-            None => token,
+            // No name can follow a vector on its line.
+            None => {
+                self.sink.report(tree::unknown_unit(self.tokens.slice(), self.span(), &[]));
+                Token::Unit
+            }
         }
     }
 
     /// A number, with the unit or the wrong unit after it.
     fn number(&mut self, token: Token) -> Token {
+        if token == Token::Integer && self.is_decimal_comma() {
+            return self.decimal_comma();
+        }
         let rest = self.rest();
         let word_and_on = rest.trim_start_matches([' ', '\t']);
         let blanks = rest.len() - word_and_on.len();
         let word = &word_and_on[..ascii_word_length(word_and_on)];
+        if let Some(blanks_and_sign) = degree_sign(rest) {
+            self.tokens.bump(blanks_and_sign);
+            return Token::BadQuantity;
+        }
         if word.is_empty() || is_before_assignment(&word_and_on[word.len()..]) {
             return token;
         }
@@ -154,6 +356,28 @@ impl<'s, 'k> Lexer<'s, 'k> {
         token
     }
 
+    /// Whether `,5` follows where no list is.
+    fn is_decimal_comma(&self) -> bool {
+        let bytes = self.rest().as_bytes();
+        !self.nesting.is_in_expression()
+            && matches!(bytes, [b',', digit, ..] if digit.is_ascii_digit())
+    }
+
+    /// `0,5`
+    fn decimal_comma(&mut self) -> Token {
+        let comma = self.span().end;
+        let digits = self.rest()[1..].bytes().take_while(u8::is_ascii_digit).count();
+        self.tokens.bump(1 + digits);
+        let message = "a number has a point, and no comma";
+        let instead = self.tokens.slice().replace(',', ".");
+        self.sink.report(
+            Diagnostic::error(Code::MalformedNumber, self.span(), message, "a decimal comma")
+                .with_help(format!("write `{instead}`"))
+                .replacing(Span::new(comma, comma + 1), "."),
+        );
+        self.number(Token::Real)
+    }
+
     /// `5.`, `.5` or, as in other languages, the range `0..9`.
     fn malformed_number(&mut self) -> Token {
         let rest = self.rest();
@@ -165,15 +389,22 @@ impl<'s, 'k> Lexer<'s, 'k> {
             });
             return Token::Real;
         }
-        self.report(Code::MalformedNumber, "a digit is missing beside the point", |text| {
-            let whole = text.starts_with('.');
-            Some(if whole { format!("write `0{text}`") } else { format!("write `{text}0`") })
-        });
+        let text = self.tokens.slice();
+        let instead = if text.starts_with('.') { format!("0{text}") } else { format!("{text}0") };
+        let message = "a digit is missing beside the point";
+        let at = Code::MalformedNumber.title();
+        self.sink.report(
+            Diagnostic::error(Code::MalformedNumber, self.span(), message, at)
+                .write_instead(self.span(), &instead),
+        );
         self.number(Token::Real)
     }
 
     /// A character that no token begins with.
     fn foreign_character(&mut self) -> Option<Token> {
+        if self.tokens.slice() == "°" && self.previous == Token::CloseBracket {
+            return Some(self.unit());
+        }
         let foreign = foreign::read(self.tokens.slice(), self.rest());
         self.tokens.bump(foreign.length);
         self.sink.report(foreign::diagnostic(self.tokens.slice(), self.span()));
@@ -280,8 +511,12 @@ impl<'s, 'k> Lexer<'s, 'k> {
 
     /// Whether only blanks stand between this token and the one before.
     fn is_same_line(&self) -> bool {
-        let between = self.source.get(self.previous_end..self.tokens.span().start).unwrap_or("");
-        between.bytes().all(|byte| byte == b' ' || byte == b'\t')
+        self.between().bytes().all(|byte| byte == b' ' || byte == b'\t')
+    }
+
+    /// What stands between this token and the one before.
+    fn between(&self) -> &'s str {
+        self.source.get(self.previous_end..self.tokens.span().start).unwrap_or("")
     }
 }
 
@@ -293,8 +528,19 @@ impl Iterator for Lexer<'_, '_> {
             if self.sink.is_full() {
                 return Some(Err(Stopped));
             }
-            let Some(raw) = self.tokens.next() else { return self.missing_brace().map(Ok) };
-            let Some(token) = self.refine(raw) else { continue };
+            let token = match self.pending.take() {
+                Some(token) => token,
+                None => {
+                    let Some(raw) = self.tokens.next() else {
+                        return self.missing_brace().map(Ok);
+                    };
+                    let Some(token) = self.refine(raw) else { continue };
+                    token
+                }
+            };
+            if self.sink.awaits_line_end() && self.between().contains(['\n', '\r']) {
+                self.sink.line_ends();
+            }
             match self.nesting.observe(token) {
                 Ok(()) => {}
                 Err(refusal) => {
@@ -309,47 +555,15 @@ impl Iterator for Lexer<'_, '_> {
                 self.give_up();
                 return Some(Err(Stopped));
             }
+            self.follow_clauses(token);
+            if self.previous == Token::OpenBrace && token.begins_statement() {
+                self.sink.block_has_statements();
+            }
             let Span { start, end } = self.span();
             (self.before_previous, self.previous) = (self.previous, token);
             self.previous_end = end as usize;
             return Some(Ok((start, token, end)));
         }
-    }
-}
-
-/// The length of the word that a text begins with.
-fn ascii_word_length(text: &str) -> usize {
-    let is_word_byte = |byte: &u8| byte.is_ascii_alphanumeric() || *byte == b'_';
-    let begins = text.bytes().next().is_some_and(|byte| !byte.is_ascii_digit());
-    if begins { text.bytes().take_while(is_word_byte).count() } else { 0 }
-}
-
-/// The length of the unit that a text begins with: `mm`, or `mm/s` written without blanks.
-fn unit_length(text: &str) -> Option<usize> {
-    let word = ascii_word_length(text);
-    let after = &text[word..];
-    if let Some(per) = after.strip_prefix('/') {
-        let whole = word + 1 + ascii_word_length(per);
-        if UNITS.contains(&&text[..whole]) {
-            return Some(whole);
-        }
-    }
-    UNITS.contains(&&text[..word]).then_some(word)
-}
-
-/// Whether a text goes on, after blanks and comments, with `=`, `+=`, `-=` or the foreign `:=`.
-fn is_before_assignment(text: &str) -> bool {
-    let mut rest = text.as_bytes();
-    loop {
-        rest = rest.trim_ascii_start();
-        let Some(comment) = rest.strip_prefix(b"//") else { break };
-        let line = comment.iter().position(|byte| matches!(byte, b'\n' | b'\r'));
-        rest = &comment[line.unwrap_or(comment.len())..];
-    }
-    match rest {
-        [b'=', b'=', ..] => false,
-        [b'=', ..] | [b'+' | b'-' | b':', b'=', ..] => true,
-        _ => false,
     }
 }
 

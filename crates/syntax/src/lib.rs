@@ -4,13 +4,17 @@
 //! beside this crate has the grammar on a page. What a program means (names, types, units,
 //! reversal) is not known here.
 
+mod advice;
+mod ahead;
 pub mod ast;
 pub mod codes;
 pub mod diagnostic;
 mod expectation;
 mod foreign;
 pub mod format;
+mod habits;
 mod imports;
+pub mod index;
 mod lexer;
 mod nearest;
 mod nesting;
@@ -105,9 +109,18 @@ fn parse_from(source: &str, start: usize) -> Parsed<'_> {
 pub fn text_of(bytes: &[u8]) -> Result<&str, Box<Diagnostic>> {
     std::str::from_utf8(bytes).map_err(|error| {
         let at = error.valid_up_to();
-        Diagnostic::error(Code::NotText, Span::default(), "this file is not text", "not UTF-8")
-            .with_note(format!("byte {at} (counted from 0) is not UTF-8"))
-            .into()
+        let message = "this file is not text";
+        let diagnostic = Diagnostic::error(Code::NotText, Span::default(), message, "not UTF-8")
+            .with_note(format!("byte {at} (counted from 0) is not UTF-8"));
+        let is_wide = bytes.starts_with(&[0xFF, 0xFE]) || bytes.starts_with(&[0xFE, 0xFF]);
+        let help = if is_wide {
+            "it begins as UTF-16 does: have the editor save it as UTF-8"
+        } else if error.error_len().is_none() {
+            "it ends within a letter: it may have been cut off"
+        } else {
+            "give a source text, saved as UTF-8"
+        };
+        diagnostic.with_help(help).into()
     })
 }
 

@@ -1,18 +1,19 @@
 //! The one place that turns what the parser could not take into diagnostics. It reads the tokens
 //! around the place again, and looks for the mistake behind the token.
 
+use crate::advice::Unexpected;
 use crate::codes::Code;
 use crate::diagnostic::{Diagnostic, Label};
 use crate::expectation::Expectation;
 use crate::nearest::nearest;
 use crate::sink::{MAX_MISTAKES, SyntaxError};
 use crate::span::Span;
-use crate::surroundings::Surroundings;
+use crate::surroundings::{Surroundings, shortened};
 use crate::token::{FREE_WORDS, Token};
 use crate::tree;
 
-/// The words for a direction that could be taken for the name of a distance.
-const DIRECTIONS: [&str; 7] = ["forward", "backward", "backwards", "left", "right", "up", "down"];
+/// Farther apart than this, in bytes, two mistakes are not taken for one.
+const LONG_LINE: usize = 1000;
 
 /// All diagnostics of the text that begins at an offset, by place: those that have
 /// been worded, and those of syntax errors.
@@ -22,9 +23,12 @@ pub(crate) fn explain(
     mut diagnostics: Vec<Diagnostic>,
     errors: &[SyntaxError],
 ) -> Vec<Diagnostic> {
+    let worded = diagnostics.len();
     if !errors.is_empty() {
         let surroundings = Surroundings::new(source, start);
-        for error in errors {
+        let unclosed = diagnostics.iter().find(|one| one.code == Code::UnclosedBracket);
+        let unclosed = unclosed.map(|one| one.primary.span);
+        for error in errors.iter().filter(|error| !follows_from(unclosed, error)) {
             let mistake = Mistake {
                 error,
                 expectation: Expectation::new(&error.expected),
@@ -33,14 +37,90 @@ pub(crate) fn explain(
             diagnostics.push(mistake.explain());
         }
     }
+    leave_out_consequences(source, &mut diagnostics, worded, errors);
     blame_one_brace(&mut diagnostics);
+    blame_brace_too_many(source, start, &mut diagnostics);
     diagnostics.sort_by_key(|diagnostic| diagnostic.primary.span);
+    say_once(source, &mut diagnostics);
     if diagnostics.len() >= MAX_MISTAKES
         && let Some(last) = diagnostics.last_mut()
     {
         last.notes.push(format!("no more than {MAX_MISTAKES} mistakes are shown"));
     }
     diagnostics
+}
+
+/// Whether a token that cannot stand here could, were a block closed before it.
+fn follows_from(unclosed: Option<Span>, error: &SyntaxError) -> bool {
+    let goes_on = matches!(
+        error.found,
+        Some(Token::CloseBrace | Token::In | Token::Else | Token::Ending | Token::Reverse)
+    );
+    goes_on && unclosed.is_some_and(|opening| opening < error.span)
+}
+
+/// What the lexer says of signs behind a token that the parser could not take, on its line, is left
+/// out: of the first `worded` diagnostics, since the others are the parser's.
+fn leave_out_consequences(
+    source: &str,
+    diagnostics: &mut Vec<Diagnostic>,
+    worded: usize,
+    errors: &[SyntaxError],
+) {
+    let is_of_lexer = |code| matches!(code, Code::ForeignOperator | Code::UnexpectedCharacter);
+    let mut index = 0;
+    diagnostics.retain(|diagnostic| {
+        index += 1;
+        let start = diagnostic.primary.span.start;
+        let is_behind = |error: &&SyntaxError| {
+            let between = error.span.start as usize..start as usize;
+            between.len() < LONG_LINE
+                && source
+                    .get(between)
+                    .is_some_and(|text| !text.is_empty() && !text.contains(['\n', '\r']))
+        };
+        index > worded || !is_of_lexer(diagnostic.code) || !errors.iter().any(|e| is_behind(&e))
+    });
+}
+
+/// A brace too many ends a sequence early, and what follows stands outside: what is reported is the
+/// brace that is indented otherwise than what it closes, and nothing of what follows from it.
+fn blame_brace_too_many(source: &str, start: usize, diagnostics: &mut Vec<Diagnostic>) {
+    let is_missing = |one: &&Diagnostic| one.code == Code::MissingBlock;
+    let missing = diagnostics.iter().filter(is_missing).map(|one| one.primary.span).min();
+    if let Some(missing) = missing {
+        // Its closing brace may be there.
+        diagnostics.retain(|one| {
+            let follows = matches!(one.code, Code::UnmatchedBracket | Code::StatementOutside);
+            !follows || one.primary.span < missing
+        });
+    }
+    let is_unmatched = |one: &Diagnostic| one.code == Code::UnmatchedBracket;
+    let Some(unmatched) = diagnostics.iter().position(is_unmatched) else { return };
+    let place = diagnostics[unmatched].primary.span;
+    let Some(suspect) = Surroundings::new(source, start).likely_too_many(place.start) else {
+        return;
+    };
+    diagnostics[unmatched].primary.span = suspect;
+    diagnostics[unmatched].primary.text = "this may be the one too many".to_owned();
+    diagnostics[unmatched].labels =
+        vec![Label { span: place, text: "no bracket is open here".to_owned() }];
+    diagnostics.retain(|one| one.code != Code::StatementOutside || one.primary.span < suspect);
+}
+
+/// The same slip again and again on a line, `[0°, 90°]`, is said once.
+fn say_once(source: &str, diagnostics: &mut Vec<Diagnostic>) {
+    diagnostics.dedup_by(|again, first| {
+        let between = first.primary.span.end as usize..again.primary.span.start as usize;
+        let is_same_line = between.len() < LONG_LINE
+            && source.get(between).is_some_and(|text| !text.contains(['\n', '\r']));
+        let is_slip = matches!(again.code, Code::UnknownUnit | Code::UnexpectedCharacter);
+        let is_again = is_slip && is_same_line && again.message == first.message;
+        if is_again {
+            first.primary.text = format!("{}, here and on", again.primary.text);
+        }
+        is_again
+    });
 }
 
 /// A declaration in a block that is never closed is a consequence of that: what is reported is the
@@ -149,8 +229,12 @@ impl Mistake<'_> {
         let span = Span::new(self.error.span.end - word.len() as u32, self.error.span.end);
         let message = format!("`{word}` cannot stand after this number");
         let diagnostic = Diagnostic::error(Code::UnexpectedToken, span, message, "unexpected");
-        Some(match nearest(word, FREE_WORDS.iter().copied()) {
-            Some(meant) => diagnostic.with_help(format!("did you mean `{meant}`?")),
+        let instead = match word {
+            "steps" | "moves" | "statements" => Some("actions"),
+            _ => nearest(word, self.expectation.words().chain(FREE_WORDS.iter().copied())),
+        };
+        Some(match instead {
+            Some(meant) => diagnostic.did_you_mean(span, meant),
             None => diagnostic,
         })
     }
@@ -162,13 +246,15 @@ impl Mistake<'_> {
         let word = found.text().filter(|_| is_meant_as_name)?;
         let message = format!("`{word}` cannot be a name");
         let diagnostic = self.error(Code::ReservedWord, message, "a word of the language");
-        Some(diagnostic.with_help(format!("choose another name, such as `{word}_1`")))
+        let help = format!("choose another name, such as `{word}_1`");
+        Some(diagnostic.with_help(help).replacing(self.error.span, format!("{word}_1")))
     }
 
     fn missing_block(&self, found: Token) -> Option<Diagnostic> {
         let wants_block = self.expectation.allows("{") && !self.expectation.allows_statement();
         let is_statement = found.begins_statement()
-            || matches!(found, Token::Assigned | Token::Speed | Token::Tool | Token::Position);
+            || matches!(found, Token::Assigned | Token::Speed | Token::Tool | Token::Position)
+            || matches!(found, Token::Then | Token::Colon) && self.expectation.allows("or");
         if !wants_block || !is_statement {
             return None;
         }
@@ -211,15 +297,35 @@ impl Mistake<'_> {
     fn unexpected(&self, found: Token) -> Diagnostic {
         let expected = self.expectation.describe();
         let message = format!("expected {expected}, found {}", self.found());
-        let mut diagnostic =
-            self.error(Code::UnexpectedToken, message, format!("expected {expected}"));
+        let mut diagnostic = match self.end_before() {
+            Some(end) => {
+                let at = format!("expected {expected} after this");
+                Diagnostic::error(Code::UnexpectedToken, end, message, at)
+            }
+            None => self.error(Code::UnexpectedToken, message, format!("expected {expected}")),
+        };
         if let Some(opening) = self.opening_that_matters() {
             diagnostic = diagnostic.with_label(opening, "opened here");
         }
-        match self.help(found) {
-            Some(help) => diagnostic.with_help(help),
-            None => diagnostic,
+        let unexpected = Unexpected {
+            error: self.error,
+            found,
+            expectation: &self.expectation,
+            surroundings: self.surroundings,
+        };
+        if let Some(advice) = unexpected.advice() {
+            diagnostic.help = Some(advice.help);
+            diagnostic.suggestion = advice.suggestion;
         }
+        diagnostic
+    }
+
+    /// The token before, if what is missing is missing behind it, at the end of its line.
+    fn end_before(&self) -> Option<Span> {
+        let start = self.error.span.start;
+        let may_end = self.expectation.allows_statement() || self.expectation.allows("}");
+        let is_next = self.surroundings.begins_line(start) && !may_end;
+        self.surroundings.before(start).filter(|_| is_next).map(|token| token.span)
     }
 
     /// The bracket whose closing one is among what is expected, if it is of an expression.
@@ -232,78 +338,8 @@ impl Mistake<'_> {
         };
         self.expectation.allows(closing).then_some(opening.span)
     }
-
-    fn help(&self, found: Token) -> Option<String> {
-        let text = self.surroundings.text(self.error.span);
-        let begins_statement = self.expectation.allows_statement();
-        let next = self.surroundings.after(self.error.span.end).map(|token| token.token);
-        if begins_statement && found == Token::Name && next == Some(Token::OpenParenthesis) {
-            return Some(format!("to call an action write `call {}(..)`", shortened(text)));
-        }
-        if begins_statement
-            && found == Token::Name
-            && let Some(statement) = self.statement_with(text)
-        {
-            return Some(format!("write `{statement}`"));
-        }
-        if found.is_word()
-            && let Some(meant) = nearest(text, self.expectation.words())
-        {
-            return Some(format!("did you mean `{meant}`?"));
-        }
-        let wants_direction = self.expectation.allows("forward")
-            && !self.expectation.is_name()
-            && !self.expectation.allows_value();
-        if wants_direction && found == Token::Plus {
-            return Some("put a sum in parentheses: `move (a + b) up`".to_owned());
-        }
-        let name = self.name_after_move().filter(|_| wants_direction)?;
-        let is_length = matches!(found, Token::Integer | Token::Real | Token::Quantity);
-        Some(match name {
-            _ if is_length => {
-                format!("the distance comes first: `move {} {name}`", shortened(text))
-            }
-            _ if DIRECTIONS.contains(&name) => {
-                format!("say how far before the direction: `move 20 mm {name}`")
-            }
-            _ => format!("to go to a position write `move to {}`", shortened(name)),
-        })
-    }
-
-    /// What a declared name is used by, where it stands alone as a statement.
-    fn statement_with(&self, name: &str) -> Option<String> {
-        let verb = match self.surroundings.declared_by(name)? {
-            Token::Io => "io",
-            Token::Sequence | Token::Action => "call",
-            // Of `advanced move NAME`: at the top of a file no other `move` stands.
-            Token::Move => "advance",
-            Token::Error => "throw",
-            Token::Joints => "move to",
-            Token::Output => return Some(format!("set {name} high")),
-            _ => return None,
-        };
-        Some(format!("{verb} {name}"))
-    }
-
-    /// The word that stands where `move` has its distance: `start` of `move start`.
-    fn name_after_move(&self) -> Option<&str> {
-        let name = self.surroundings.before(self.error.span.start)?;
-        let verb = self.surroundings.before(name.span.start)?;
-        let is_name = name.token.is_word() && verb.token == Token::Move;
-        is_name.then(|| self.surroundings.text(name.span))
-    }
 }
 
 fn is_closing(token: Token) -> bool {
     matches!(token, Token::CloseBrace | Token::CloseParenthesis | Token::CloseBracket)
-}
-
-/// A piece of source for a message: its first line, and not too much of it.
-fn shortened(text: &str) -> String {
-    const MOST: usize = 40;
-    let line = text.lines().next().unwrap_or("");
-    match line.char_indices().nth(MOST) {
-        Some((end, _)) => format!("{}..", &line[..end]),
-        None => line.to_owned(),
-    }
 }

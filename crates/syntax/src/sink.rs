@@ -2,6 +2,7 @@
 //! from being reported many times. How it is worded is said elsewhere.
 
 use crate::ast::Item;
+use crate::codes::Code;
 use crate::diagnostic::Diagnostic;
 use crate::span::Span;
 use crate::token::Token;
@@ -51,6 +52,10 @@ pub(crate) struct Sink<'s> {
     /// The end of the last mistake, while nothing whole has been read since: a further mistake of
     /// grammar is then taken for a consequence.
     aftermath: Cell<Option<u32>>,
+    /// Whether that mistake was the lexer's, which has put something right in its place.
+    is_lexical: Cell<bool>,
+    /// Where the mistake begins that was found last.
+    newest: Cell<u32>,
     /// The end of the mistake that reaches furthest.
     furthest: Cell<u32>,
     block: Cell<BlockKind>,
@@ -72,6 +77,8 @@ pub(crate) enum BlockKind {
 impl<'s> Sink<'s> {
     /// A mistake that its finder has worded.
     pub(crate) fn report(&self, diagnostic: Diagnostic) {
+        self.is_lexical.set(is_put_right(diagnostic.code));
+        self.newest.set(diagnostic.primary.span.start);
         self.unsettle(diagnostic.primary.span.end);
         if self.count_one() {
             self.diagnostics.borrow_mut().push(diagnostic);
@@ -86,14 +93,23 @@ impl<'s> Sink<'s> {
         self.unsettle(end);
     }
 
+    /// Whether the end of the line matters: a mistake of the lexer reaches no further.
+    pub(crate) fn awaits_line_end(&self) -> bool {
+        self.is_lexical.get()
+    }
+
+    /// The line ends on which a mistake was found that reaches no further.
+    pub(crate) fn line_ends(&self) {
+        self.is_lexical.set(false);
+        self.aftermath.set(None);
+    }
+
     /// A token that the parser could not take, and the tokens it left out in order to go on at
     /// `end`, after which comes `rest`.
     pub(crate) fn recovered(&self, recovery: Recovery, end: u32, rest: &str) {
         self.recoveries.set(self.recoveries.get() + 1);
         self.unexpected(recovery.error, end);
-        // A new line or `;` begins something new.
-        let rest = rest.trim_start_matches([' ', '\t']);
-        if rest.starts_with(['\r', '\n', ';']) || rest.starts_with("//") {
+        if begins_anew(rest) {
             self.aftermath.set(None);
         }
     }
@@ -118,9 +134,11 @@ impl<'s> Sink<'s> {
         if self.block.get() == BlockKind::Unknown {
             self.block.set(BlockKind::Foreign);
         }
-        let is_consequence =
-            self.aftermath.get().is_some() || self.block.get() == BlockKind::Foreign;
+        // The lexer is ahead of the parser: what it found behind the token is no cause.
+        let is_after = self.aftermath.get().is_some() && self.newest.get() <= span.start;
+        let is_consequence = is_after || self.block.get() == BlockKind::Foreign;
         self.unsettle(end.max(span.start));
+        self.is_lexical.set(false);
         if !is_consequence && self.count_one() {
             self.syntax_errors.borrow_mut().push(SyntaxError { span, found, expected });
         }
@@ -157,10 +175,26 @@ impl<'s> Sink<'s> {
         outer
     }
 
-    /// That block ends, and with it what followed from the mistake.
-    pub(crate) fn leave_block(&self, outer: BlockKind) {
+    /// The block in hand begins with a word that only statements begin with.
+    pub(crate) fn block_has_statements(&self) {
+        if self.block.get() == BlockKind::Unknown {
+            self.block.set(BlockKind::Expected);
+            self.aftermath.set(None);
+        }
+    }
+
+    /// That block ends, and with it what followed from the mistake, unless its line goes on.
+    pub(crate) fn leave_block(&self, outer: BlockKind, rest: &str) {
         self.block.set(outer);
-        self.aftermath.set(None);
+        let rest = rest.trim_start_matches([' ', '\t']);
+        if !rest.starts_with(|c: char| c.is_ascii_alphanumeric()) {
+            self.aftermath.set(None);
+        }
+    }
+
+    /// What was left out was a declaration, so that statements that follow it may be its own.
+    pub(crate) fn leave_out_item(&self) {
+        self.is_outside.set(true);
     }
 
     /// A declaration that was found in a block: it is kept as if it stood at the top.
@@ -172,12 +206,14 @@ impl<'s> Sink<'s> {
 
     /// A statement that was found at the top of the file: the first of a row is reported, but not
     /// where a mistake before has put it there.
-    pub(crate) fn outside(&self, span: Span, diagnostic: impl FnOnce() -> Diagnostic) {
+    pub(crate) fn outside(&self, span: Span, rest: &str, diagnostic: impl FnOnce() -> Diagnostic) {
         let is_consequence = self.aftermath.get().is_some() || self.furthest.get() > span.start;
         if !self.is_outside.replace(true) && !is_consequence {
             self.report(diagnostic());
         }
-        self.aftermath.set(None);
+        if begins_anew(rest) {
+            self.aftermath.set(None);
+        }
     }
 
     /// A declaration that ends at this place has been read where it belongs.
@@ -210,4 +246,22 @@ impl<'s> Sink<'s> {
         self.count.set(self.count.get() + usize::from(has_room));
         has_room
     }
+}
+
+/// Whether the lexer puts something that fits in the place of what is wrong.
+fn is_put_right(code: Code) -> bool {
+    matches!(
+        code,
+        Code::UnexpectedCharacter
+            | Code::MalformedNumber
+            | Code::UnknownUnit
+            | Code::ForeignOperator
+            | Code::ForeignWord
+    )
+}
+
+/// Whether something new begins with what follows: on a new line, or after `;`.
+fn begins_anew(rest: &str) -> bool {
+    let rest = rest.trim_start_matches([' ', '\t']);
+    rest.starts_with(['\r', '\n', ';']) || rest.starts_with("//")
 }

@@ -110,6 +110,22 @@ impl<'s> Surroundings<'s> {
         Some(suspect.unwrap_or(innermost))
     }
 
+    /// The closing brace before an offset that is probably one too many: it begins a line that is
+    /// indented otherwise than that of the one it closes.
+    pub(crate) fn likely_too_many(&self, offset: u32) -> Option<Span> {
+        let mut open = Vec::new();
+        for token in self.until(offset) {
+            let Some(opening) = follow(&mut open, *token) else { continue };
+            let (opened, closed) = (opening.span.start, token.span.start);
+            let is_other_line = self.line_start(opened) != self.line_start(closed);
+            let is_odd = self.indentation(opened) != self.indentation(closed);
+            if is_other_line && self.begins_line(closed) && is_odd {
+                return Some(token.span);
+            }
+        }
+        None
+    }
+
     /// What is said of the bracket that probably lacks its closing one, at the end of the text.
     pub(crate) fn unclosed_at(&self, end: u32) -> Option<Diagnostic> {
         let opening = self.likely_unclosed()?;
@@ -131,6 +147,16 @@ impl<'s> Surroundings<'s> {
     fn indentation(&self, offset: u32) -> &'s str {
         let line = self.text(Span::new(self.line_start(offset), offset));
         &line[..line.len() - line.trim_start_matches([' ', '\t']).len()]
+    }
+}
+
+/// A piece of source for a message: its first line, and not too much of it.
+pub(crate) fn shortened(text: &str) -> String {
+    const MOST: usize = 40;
+    let line = text.lines().next().unwrap_or("");
+    match line.char_indices().nth(MOST) {
+        Some((end, _)) => format!("{}..", &line[..end]),
+        None => line.to_owned(),
     }
 }
 

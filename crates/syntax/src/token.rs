@@ -97,22 +97,22 @@ tokens! {
         Toggle "toggle" True "true" Until "until" Var "var" Wait "wait" While "while"
     }
     free {
-        Action "action" Actions "actions" Advanced "advanced" After "after" Always "always"
-        At "at" Backward "backward" Backwards "backwards" Base "base" By "by" Cell "cell"
-        Continue "continue" Current "current" Down "down" Ending "ending" Entered "entered"
-        Error "error" Escalating "escalating" Failure "failure" Fast "fast" Fatal "fatal"
-        Forward "forward" From "from" High "high" Import "import" In "in" Initial "initial"
-        Item "item" Joints "joints" Keyframe "keyframe" Learned "learned" Left "left"
-        Lighter "lighter" Limit "limit" Linearly "linearly" Low "low" Moves "moves" Normal "normal"
-        Of "of" On "on" Once "once" Operator "operator" Opposite "opposite" Otherwise "otherwise"
-        Output "output" Perturbation "perturbation" Perturbed "perturbed" Position "position"
-        Program "program" Recover "recover" Recoverable "recoverable" Requires "requires"
-        Respond "respond" Restart "restart" Reverse "reverse" Reversible "reversible"
-        Reversing "reversing" Right "right" Severity "severity" Slow "slow" Slower "slower"
-        Speed "speed" Start "start" Stop "stop" Straight "straight" Succeeds "succeeds"
-        Success "success" Tcp "tcp" Then "then" Times "times" Tool "tool" ToolMount "toolmount"
-        Up "up" Using "using" Very "very" Warning "warning" When "when" With "with" X "x" Y "y"
-        Z "z"
+        Action "action" Actions "actions" Advanced "advanced" After "after" Allow "allow"
+        Always "always" At "at" Backward "backward" Backwards "backwards" Base "base" By "by"
+        Cell "cell" Continue "continue" Current "current" Down "down" Ending "ending"
+        Entered "entered" Error "error" Escalating "escalating" Failure "failure" Fast "fast"
+        Fatal "fatal" File "file" Forward "forward" From "from" High "high" Import "import" In "in"
+        Initial "initial" Item "item" Joints "joints" Keyframe "keyframe" Learned "learned"
+        Left "left" Lighter "lighter" Limit "limit" Linearly "linearly" Low "low" Moves "moves"
+        Normal "normal" Of "of" On "on" Once "once" Operator "operator" Opposite "opposite"
+        Otherwise "otherwise" Output "output" Perturbation "perturbation" Perturbed "perturbed"
+        Position "position" Program "program" Recover "recover" Recoverable "recoverable"
+        Requires "requires" Respond "respond" Restart "restart" Reverse "reverse"
+        Reversible "reversible" Reversing "reversing" Right "right" Severity "severity" Slow "slow"
+        Slower "slower" Speed "speed" Start "start" Stop "stop" Straight "straight"
+        Succeeds "succeeds" Success "success" Tcp "tcp" Then "then" Times "times" Tool "tool"
+        ToolMount "toolmount" Up "up" Using "using" Very "very" Warning "warning" When "when"
+        With "with" X "x" Y "y" Z "z"
     }
     signs {
         OpenBrace "{" CloseBrace "}" OpenParenthesis "(" CloseParenthesis ")" OpenBracket "["
@@ -158,6 +158,53 @@ impl Token {
                 | Wait
                 | While
         )
+    }
+
+    /// Whether a statement or declaration can end with it, and no name can follow it in one.
+    pub(crate) fn ends_statement(self) -> bool {
+        use Token::*;
+        matches!(
+            self,
+            Name | Assigned
+                | Integer
+                | Real
+                | Quantity
+                | Unit
+                | Text
+                | CloseParenthesis
+                | CloseBracket
+                | True
+                | False
+                | Holding
+                | Force
+                | Break
+                | Forward
+                | Backward
+                | Backwards
+                | Left
+                | Right
+                | Up
+                | Down
+                | X
+                | Y
+                | Z
+                | Base
+                | Tcp
+                | ToolMount
+                | Slow
+                | Normal
+                | Fast
+                | High
+                | Low
+                | Linearly
+                | Always
+        )
+    }
+
+    /// Whether a name follows it that ends the statement. Reserved words alone are among them.
+    pub(crate) fn wants_name(self) -> bool {
+        use Token::*;
+        matches!(self, To | Io | Call | Advance | Throw | Checkpoint)
     }
 
     /// Whether what follows on the line is an operand: the `x` of `if x = 3` is none that is

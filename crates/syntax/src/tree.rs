@@ -17,6 +17,11 @@ pub(crate) fn text(source: &str, start: u32, end: u32) -> &str {
     source.get(start as usize..end as usize).unwrap_or("")
 }
 
+/// The source from an offset on.
+pub(crate) fn rest(source: &str, start: u32) -> &str {
+    source.get(start as usize..).unwrap_or("")
+}
+
 /// A name at a place.
 pub(crate) fn name(source: &str, start: u32, end: u32) -> Name<'_> {
     Spanned::new(text(source, start, end), Span::new(start, end))
@@ -91,7 +96,9 @@ pub(crate) fn bad_quantity<'s>(
     let span = Span::new(end - word.len() as u32, end);
     let is_of_number = number.len() + word.len() == (end - start) as usize;
     let is_base = number == "0" && word.starts_with(['x', 'X', 'b', 'B', 'o', 'O']);
-    sink.report(if is_of_number && (word.starts_with('_') || is_base) {
+    sink.report(if word == "step" {
+        step(span)
+    } else if is_of_number && (word.starts_with('_') || is_base) {
         let message = "numbers are written in decimal digits, without groups";
         Diagnostic::error(Code::MalformedNumber, span, message, "not a part of a number")
     } else {
@@ -100,23 +107,48 @@ pub(crate) fn bad_quantity<'s>(
     ExpressionKind::Missing
 }
 
+/// A loop that counts is given a step.
+pub(crate) fn step(span: Span) -> Diagnostic {
+    let message = "a loop that counts goes by one";
+    Diagnostic::error(Code::ForeignLoop, span, message, "no step can be given")
+        .with_help("compute in the loop: `var n = i * 2`; it counts down by `from 9 down to 0`")
+}
+
 /// A word stands where a unit should; `others` are words that could have been meant as well.
 pub(crate) fn unknown_unit(word: &str, span: Span, others: &[&str]) -> Diagnostic {
     let message = format!("`{word}` is not a unit");
     let diagnostic = Diagnostic::error(Code::UnknownUnit, span, message, "not a unit")
         .with_note(format!("the units are {}", UNITS.join(", ")));
-    match nearest(word, UNITS.iter().chain(others).copied()) {
-        Some(meant) => diagnostic.with_help(format!("did you mean `{meant}`?")),
-        None => diagnostic,
+    let small = word.to_lowercase();
+    let row = UNIT_WORDS.iter().find(|(words, _)| words.contains(&small.as_str()));
+    match (row, nearest(word, UNITS.iter().chain(others).copied())) {
+        (Some((_, unit)), _) => diagnostic.write_instead(span, unit),
+        (None, Some(meant)) => diagnostic.did_you_mean(span, meant),
+        (None, None) => diagnostic,
     }
 }
+
+/// Other words for the units, and one that elsewhere follows the first number of a loop.
+const UNIT_WORDS: [(&[&str], &str); 11] = [
+    (&["millimeter", "millimeters", "millimetre", "millimetres"], "mm"),
+    (&["centimeter", "centimeters", "centimetre", "centimetres"], "cm"),
+    (&["meter", "meters", "metre", "metres"], "m"),
+    (&["micrometer", "micrometers", "micron", "microns"], "um"),
+    (&["degree", "degrees", "°"], "deg"),
+    (&["radian", "radians"], "rad"),
+    (&["msec", "millis", "millisecond", "milliseconds"], "ms"),
+    (&["sec", "secs", "second", "seconds"], "s"),
+    (&["mins", "minute", "minutes"], "min"),
+    (&["newton", "newtons"], "N"),
+    (&["downto"], "down to"),
+];
 
 /// The number and the word of `20 mm`.
 pub(crate) fn split_quantity(text: &str) -> (&str, &str) {
     let bytes = text.as_bytes();
     // `e` is of the number where digits or a sign and digits follow: `1e5 mm`, not `3 eel`.
     let is_number = |index: usize| match bytes[index] {
-        b'0'..=b'9' | b'.' => true,
+        b'0'..=b'9' | b'.' | b',' => true,
         b'+' | b'-' => true,
         b'e' | b'E' => {
             let next = bytes.get(index + 1);
@@ -200,6 +232,7 @@ pub(crate) fn assigns(sign: Span) -> Diagnostic {
     let message = "`=` assigns and has no value";
     Diagnostic::error(Code::AssignmentAsComparison, sign, message, "assigns")
         .with_help("to compare two values write `==`")
+        .replacing(sign, "==")
 }
 
 /// An `if` without its `ending when`.
@@ -234,8 +267,8 @@ pub(crate) fn block_of(kind: StatementKind<'_>, start: u32, end: u32) -> Block<'
 }
 
 /// A statement at the top of a file.
-pub(crate) fn statement_outside(sink: &Sink<'_>, span: Span) {
-    sink.outside(span, || {
+pub(crate) fn statement_outside(source: &str, sink: &Sink<'_>, span: Span) {
+    sink.outside(span, rest(source, span.end), || {
         let message = "a statement stands outside of a sequence";
         Diagnostic::error(Code::StatementOutside, span, message, "in no sequence")
             .with_note("at the top of a file stand declarations")
@@ -258,6 +291,7 @@ pub(crate) fn declaration_inside<'s>(sink: &Sink<'s>, item: Item<'s>, start: u32
         Item::Error(error) => ("error", error.name.span.end),
         Item::AdvancedMove(advanced) => ("advanced move", advanced.name.span.end),
         Item::Variable(variable) => ("variable", variable.name.span.end),
+        Item::Allow(allow) => ("allow", allow.span.end),
         Item::Sequence(sequence) if sequence.is_action => ("action", sequence.name.span.end),
         Item::Sequence(sequence) => ("sequence", sequence.name.span.end),
     };

@@ -6,10 +6,13 @@
 pub mod altered;
 pub mod code;
 pub mod files;
+pub mod fork_code;
 pub mod format_laws;
+pub mod front_laws;
 pub mod hostile;
 pub mod invert_laws;
 pub mod invertible;
+pub mod large;
 pub mod laws;
 pub mod ledger;
 pub mod logged;

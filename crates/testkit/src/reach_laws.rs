@@ -3,7 +3,7 @@
 //! [`machine_laws`](crate::machine_laws) are, and panics where it does not hold.
 
 use crate::code::{self, Options};
-use crate::{Ledger, programs};
+use crate::{Ledger, fork_code, programs};
 use arbitrary::{Result, Unstructured};
 use obverse_bytecode::{Verified, verify};
 use obverse_reach::{Horizon, MAX_KEPT, Reach};
@@ -15,6 +15,11 @@ const MAX_STEPS: u16 = 600;
 const MAX_STEPS_BACK: u8 = 40;
 /// How many instructions going back is given in all: a program may be long in passing its blocks.
 const MAX_BACK: u64 = 1_000_000;
+
+/// How many runs of a module of forks are gone back from, each at other steps.
+const FORK_RUNS: u64 = 3;
+/// How long each of them is at the most, in steps.
+const FORK_STEPS: u64 = 120;
 
 /// A point of a run, and where going back from it ended.
 pub type Met = (u32, Horizon);
@@ -44,6 +49,33 @@ pub fn reach_of_programs(u: &mut Unstructured<'_>) -> Result<bool> {
     let program = verified(module);
     let reach = Reach::of(program.module());
     Ok(meet(&program, &reach, u)?.is_some())
+}
+
+/// Random modules of forks: from many points of some runs going back ends where it was said to.
+/// Whether something stopped it in a branch.
+///
+/// # Errors
+/// Those of the randomness.
+pub fn reach_of_forks(u: &mut Unstructured<'_>) -> Result<bool> {
+    let program = verified(fork_code::module(u)?);
+    let reach = Reach::of(program.module());
+    consistent(&reach, program.module().code.len());
+    let mut is_stopped_in_branch = false;
+    for run in 0..FORK_RUNS {
+        let mut cell = Ledger::new(run);
+        let mut machine = machine(&program, &cell);
+        for at in 0..FORK_STEPS {
+            if at % FORK_RUNS == run {
+                let met = agree(&reach, &machine, &cell);
+                let is_stopped = met.is_some_and(|(_, horizon)| horizon != Horizon::Start);
+                is_stopped_in_branch |= is_stopped && !machine.state().branches().is_empty();
+            }
+            if !step(&mut machine, Direction::Forward, &mut cell) {
+                break;
+            }
+        }
+    }
+    Ok(is_stopped_in_branch)
 }
 
 /// All that some runs of a random module meet, and all that is said of the points they met it at.

@@ -34,6 +34,7 @@ impl<'s> Checker<'s> {
                 let first = Expression::int(1, times.span);
                 let last = self.value(times, &Need::new(ValueType::Int, "`repeat`"));
                 let header = Span::new(start, times.span.end);
+                self.warn_of_empty_count(&first, false, &last);
                 Some(self.counted(None, (first, last), body, header))
             }
             Written::For { name, first, down, last, body } => {
@@ -41,6 +42,7 @@ impl<'s> Checker<'s> {
                 let header = Span::new(start, last.span.end);
                 let first = self.value(first, &need);
                 let last = self.value(last, &need);
+                self.warn_of_empty_count(&first, *down, &last);
                 let (ends, meaning): (_, fn(CounterId) -> Meaning) = match *down {
                     false => ((first, last), Meaning::Counter),
                     true => ((complement(first), complement(last)), Meaning::CountDown),
@@ -64,6 +66,7 @@ impl<'s> Checker<'s> {
         header: Span,
     ) -> (Statement, bool) {
         let condition = self.condition(condition, "`if`");
+        self.warn_of_constant(&condition, "leave it out, with the block that is never run");
         let hoists = self.frame.take_hoists();
         let named = self.frame.named;
         let then = self.block(then);
@@ -92,6 +95,7 @@ impl<'s> Checker<'s> {
     ) -> (Statement, bool) {
         let header = Span::new(start, condition.span.end);
         let condition = self.prepared_condition(condition);
+        self.warn_of_constant(&condition.value, "a loop for ever is written `loop { .. }`");
         let entered = entered_when.map(|written| self.assertion(written, "`entered when`"));
         let (body, _) = self.body(body, header);
         if let (Some(written), false) = (entered_when, body.falls_through) {

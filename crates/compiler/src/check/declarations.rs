@@ -112,10 +112,8 @@ impl<'s> Checker<'s> {
     fn vector_unit(&mut self, unit: Name<'s>, dimension: Dimension, what: &str) -> Option<Unit> {
         let known = Unit::of_name(unit.value);
         match known {
-            None => {
-                let message = format!("`{}` is not a unit", unit.value);
-                self.reports.error(Code::UnknownUnit, unit.span, message, "not a unit");
-            }
+            // The parser has said so.
+            None => {}
             Some(known) if known.dimension != dimension => {
                 let found = known.dimension;
                 let message =

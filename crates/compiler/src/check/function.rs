@@ -33,8 +33,7 @@ impl<'s> Checker<'s> {
         for (parameter, of_type) in sequence.parameters.iter().zip(types) {
             self.check_passable(parameter.type_name, of_type);
             self.declare_local(parameter.name, of_type);
-            // What a caller must give need not be taken.
-            self.names.mark_used(parameter.name.value);
+            self.names.mark_parameter(parameter.name.value);
         }
         match u8::try_from(sequence.parameters.len()) {
             Ok(parameters) => self.frame.layout.parameters = parameters,
@@ -156,7 +155,7 @@ impl<'s> Checker<'s> {
             Block { statements: Vec::new(), falls_through: true, end: last_byte(block.span) };
         let mut unreached: Option<Span> = None;
         for written in &block.statements {
-            if !checked.falls_through {
+            if !checked.falls_through && written.allow().is_none() {
                 self.frame.is_dead = true;
                 unreached = unreached.or(Some(written.span));
             }

@@ -202,7 +202,9 @@ impl<'s> Checker<'s> {
     fn requires(&mut self, condition: &ast::Expression<'s>, span: Span) -> (Prepared, ReasonId) {
         let reason = format!("{} requires {}", self.frame.name, print_expression(condition));
         let reason = self.reason(Spanned::new(&reason, span));
-        (self.prepared(condition, &Need::new(ValueType::Bool, "`requires`")), reason)
+        let condition = self.prepared(condition, &Need::new(ValueType::Bool, "`requires`"));
+        self.warn_of_constant(&condition.value, "leave the clause out, or ask for a reading");
+        (condition, reason)
     }
 
     fn move_distance(&mut self, written: &ast::Expression<'s>) -> Prepared {

@@ -18,6 +18,7 @@ mod program;
 mod reverse;
 mod signals;
 mod statement;
+mod unused;
 
 use crate::keyframes::KeyframeFlow;
 use crate::report::Reports;
@@ -93,6 +94,9 @@ impl<'s> Checker<'s> {
         let before = self.names.find(name.value);
         // What is meant by a use of it is not known, so that neither is called unused.
         self.names.mark_used(name.value);
+        let is_again = !matches!(before, Found::Nothing);
+        // Of which type it is meant to be is not known.
+        let meaning = if is_again { meaning.of_unknown_type() } else { meaning };
         if let Some(first) = self.names.declare(name, meaning) {
             let kind = match before {
                 Found::Here(symbol) | Found::Outside(symbol) => symbol.meaning.kind(),
@@ -166,7 +170,7 @@ impl<'s> Checker<'s> {
             Diagnostic::error(Code::UnknownName, name.span, message, "declared nowhere");
         let meant = self.reports.meant(name.value, self.names.candidates(wanted));
         if let Some(meant) = meant {
-            diagnostic = diagnostic.with_help(format!("did you mean `{meant}`?"));
+            diagnostic = diagnostic.did_you_mean(name.span, meant);
             self.names.mark_used(meant);
         }
         self.reports.add(diagnostic);

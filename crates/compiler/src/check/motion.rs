@@ -184,7 +184,7 @@ impl<'s> Checker<'s> {
         let known = self.known_keyframes(declared);
         let meant = self.reports.meant(keyframe.value, known.iter().map(String::as_str));
         diagnostic = match meant {
-            Some(meant) => diagnostic.with_help(format!("did you mean `{meant}`?")),
+            Some(meant) => diagnostic.did_you_mean(keyframe.span, meant),
             None if known.is_empty() => diagnostic.with_note("it has none"),
             None => diagnostic.with_note(format!("it has {}", known.join(", "))),
         };

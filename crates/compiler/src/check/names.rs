@@ -82,6 +82,15 @@ impl Meaning {
         !self.is_of_frame()
     }
 
+    /// The same, if it is a variable, of no type that anything follows from.
+    pub(crate) fn of_unknown_type(self) -> Self {
+        match self {
+            Self::Global(id, _) => Self::Global(id, ValueType::Unknown),
+            Self::Local(id, _) => Self::Local(id, ValueType::Unknown),
+            _ => self,
+        }
+    }
+
     fn is_of_frame(self) -> bool {
         matches!(self, Self::Local(..) | Self::Counter(_) | Self::CountDown(_) | Self::Position(_))
     }
@@ -96,6 +105,10 @@ pub(crate) struct Symbol<'s> {
     pub(crate) meaning: Meaning,
     /// Whether something needs it.
     pub(crate) is_used: bool,
+    /// Whether something is assigned to it.
+    pub(crate) is_assigned: bool,
+    /// Whether a caller gives it its value.
+    pub(crate) is_parameter: bool,
     frame: u32,
 }
 
@@ -131,7 +144,9 @@ pub(crate) struct OuterFrame(u32);
 impl<'s> Names<'s> {
     /// Give a name a meaning from here on; the place where it has one already.
     pub(crate) fn declare(&mut self, name: Name<'s>, meaning: Meaning) -> Option<Span> {
-        let symbol = Symbol { name, meaning, is_used: false, frame: self.frame };
+        let (is_used, is_assigned, is_parameter) = (false, false, false);
+        let frame = self.frame;
+        let symbol = Symbol { name, meaning, is_used, is_assigned, is_parameter, frame };
         let before = self.visible.insert(name.value, self.symbols.len());
         self.symbols.push(symbol);
         self.hidden.push((name.value, before));
@@ -154,6 +169,20 @@ impl<'s> Names<'s> {
     pub(crate) fn mark_used(&mut self, name: &str) {
         if let Some(&index) = self.visible.get(name) {
             self.symbols[index].is_used = true;
+        }
+    }
+
+    /// Note that something is assigned to a name.
+    pub(crate) fn mark_assigned(&mut self, name: &str) {
+        if let Some(&index) = self.visible.get(name) {
+            self.symbols[index].is_assigned = true;
+        }
+    }
+
+    /// Note that a name is that of a parameter.
+    pub(crate) fn mark_parameter(&mut self, name: &str) {
+        if let Some(&index) = self.visible.get(name) {
+            self.symbols[index].is_parameter = true;
         }
     }
 

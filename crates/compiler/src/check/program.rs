@@ -6,7 +6,8 @@ use super::names::{Found, Meaning, Names};
 use super::{Checker, Interned, Signature};
 use crate::keyframes::KeyframeFlow;
 use crate::path;
-use crate::report::{Reports, warning};
+use crate::reached;
+use crate::report::Reports;
 use crate::tree;
 use crate::types::{TYPE_NAMES, ValueType};
 use obverse_bytecode::{Mentioned, Module, SourceFile};
@@ -30,14 +31,17 @@ pub(crate) fn check<'s>(
     checker.check_bodies(program);
     let main = checker.main(program);
     checker.check_checkpoints();
-    checker.warn_of_unused(main);
+    let unnamed = checker.warn_of_unused(main);
     let flow = std::mem::take(&mut checker.keyframes);
     flow.check(&checker.module, &mut checker.reports);
     let Checker { reports, functions, module, first_values, .. } = checker;
     let functions: Option<Vec<tree::Function>> = functions.into_iter().collect();
+    let mut reports = reports;
     let checked = match (main, functions) {
         (Some(main), Some(functions)) if !reports.has_errors() => {
-            Some(tree::Program { module, first_values, functions, main })
+            let checked = tree::Program { module, first_values, functions, main };
+            reached::check(&checked, sources, &unnamed, &mut reports);
+            Some(checked)
         }
         _ => None,
     };
@@ -92,6 +96,7 @@ impl<'s> Checker<'s> {
                     _ = self.declare_function(guarded.name, Meaning::Guarded);
                 }
                 Item::Sequence(sequence) => self.declare_sequence(sequence),
+                Item::Allow(_) => {}
                 Item::Joints(joints) => {
                     let entries = self.module.joints.len();
                     let id = self.index(entries, "joint configurations", joints.name.span);
@@ -174,8 +179,10 @@ impl<'s> Checker<'s> {
             let mut diagnostic =
                 Diagnostic::error(Code::UnknownType, name.span, message, "not a type")
                     .with_note(format!("the types are {}", names.join(", ")));
-            if let Some(meant) = self.reports.meant(name.value, names.into_iter()) {
-                diagnostic = diagnostic.with_help(format!("did you mean `{meant}`?"));
+            if let Some(meant) = foreign_type(name.value) {
+                diagnostic = diagnostic.write_instead(name.span, meant);
+            } else if let Some(meant) = self.reports.meant(name.value, names.into_iter()) {
+                diagnostic = diagnostic.did_you_mean(name.span, meant);
             }
             self.reports.add(diagnostic);
             ValueType::Unknown
@@ -201,7 +208,11 @@ impl<'s> Checker<'s> {
                 Item::Io(io) => self.check_counterpart(io),
                 Item::Error(error) => self.check_error(error),
                 Item::AdvancedMove(guarded) => self.check_opposite_move(guarded),
-                Item::Cell(_) | Item::Import(_) | Item::Signal(_) | Item::Sequence(_) => {}
+                Item::Cell(_)
+                | Item::Import(_)
+                | Item::Signal(_)
+                | Item::Sequence(_)
+                | Item::Allow(_) => {}
             }
         }
     }
@@ -281,7 +292,7 @@ impl<'s> Checker<'s> {
     }
 
     /// Whether something stands in the file that was asked for, not in one that it imports.
-    fn is_own(&self, span: Span) -> bool {
+    pub(super) fn is_own(&self, span: Span) -> bool {
         self.sources.locate(span).file == 0
     }
 
@@ -296,7 +307,7 @@ impl<'s> Checker<'s> {
                 Diagnostic::error(Code::UnknownCheckpoint, wanted.span, message, "set nowhere");
             let known = self.set_checkpoints.iter().copied();
             diagnostic = match self.reports.meant(wanted.value, known) {
-                Some(meant) => diagnostic.with_help(format!("did you mean `{meant}`?")),
+                Some(meant) => diagnostic.did_you_mean(wanted.span, meant),
                 None => {
                     diagnostic.with_help(format!("write `checkpoint {}` where it is", wanted.value))
                 }
@@ -304,34 +315,19 @@ impl<'s> Checker<'s> {
             self.reports.add(diagnostic);
         }
     }
+}
 
-    fn warn_of_unused(&mut self, main: Option<FunctionId>) {
-        if self.reports.has_errors() {
-            // What would use a thing may be what has the mistake.
-            return;
-        }
-        for symbol in self.names.all() {
-            let name = symbol.name.value;
-            let is_main = matches!(symbol.meaning, Meaning::Sequence(id) if Some(id) == main);
-            let is_offered = symbol.meaning.is_declared() && !self.is_own(symbol.name.span);
-            if symbol.is_used || is_main || is_offered || name.starts_with('_') {
-                continue;
-            }
-            let (kind, use_) = match symbol.meaning {
-                Meaning::Sequence(_) | Meaning::Action(_) => (symbol.meaning.kind(), "called"),
-                Meaning::Error(_) => ("an error", "thrown"),
-                Meaning::Global(..) | Meaning::Local(..) => ("a variable", "read"),
-                // What the workcell has is not the program's to leave out.
-                Meaning::Item(_) | Meaning::Output(_) | Meaning::Input(_) => continue,
-                Meaning::Counter(_) | Meaning::CountDown(_) => continue,
-                _ => (symbol.meaning.kind(), "used"),
-            };
-            let message = format!("`{name}` is {kind} that is never {use_}");
-            let at = format!("never {use_}");
-            self.reports.add(
-                warning(Code::Unused, symbol.name.span, message, at)
-                    .with_help(format!("leave it out, or call it `_{name}`")),
-            );
-        }
-    }
+/// The type that is meant by the name that another language has for it.
+fn foreign_type(name: &str) -> Option<&'static str> {
+    Some(match name.to_lowercase().as_str() {
+        "integer" | "long" | "i64" | "i32" => "int",
+        "float" | "double" | "real" | "num" | "f64" | "f32" => "number",
+        "boolean" | "flag" => "bool",
+        "distance" | "metres" | "meters" | "mm" => "length",
+        "duration" | "seconds" => "time",
+        "degrees" | "radians" => "angle",
+        "newtons" => "force",
+        "robtarget" | "jointtarget" | "position" | "pose" | "configuration" => "joints",
+        _ => return None,
+    })
 }

@@ -31,7 +31,7 @@ impl<'s> Checker<'s> {
             let at = format!("the {word} of `{}`", first.value);
             self.reports.add(
                 warning(Code::TwoNames, entry.number.span, message, at)
-                    .with_label(first.span, "which is named here")
+                    .with_label(first.span, "named here")
                     .with_help("give each name a number of its own"),
             );
         }

@@ -77,6 +77,8 @@ impl<'s> Checker<'s> {
                 return self.with_in_reverse(parameters, block, span);
             }
             Written::Throw(name) => return self.throw(*name, span),
+            // What it says has been heard before.
+            Written::Allow(_) => return None,
         };
         Some((self.done(kind, span), true))
     }
@@ -265,7 +267,10 @@ impl<'s> Checker<'s> {
         written: &ast::Expression<'s>,
     ) -> Option<StatementKind> {
         let Some((place, of_type)) = self.assigned(name) else {
-            self.any_value(written);
+            // `speed = slow` is one mistake.
+            if !matches!(name.value, "speed" | "tool") {
+                self.any_value(written);
+            }
             return None;
         };
         let what = format!("the variable `{}`", name.value);
@@ -303,22 +308,46 @@ impl<'s> Checker<'s> {
         Some(StatementKind::Store(place, binary(instr, former, value, of_type, span)))
     }
 
+    /// An assignment to a name that nothing has: a variable that was not declared, or a setting.
+    fn report_undeclared(&mut self, name: Name<'s>) {
+        let message = format!("there is no `{}`; a variable is needed here", name.value);
+        let diagnostic =
+            Diagnostic::error(Code::UnknownName, name.span, message, "declared nowhere");
+        let meant = self.reports.meant(name.value, self.names.candidates(is_variable));
+        self.reports.add(match (name.value, meant) {
+            ("speed", _) => diagnostic.with_help("a speed is set without `=`: `speed slow`"),
+            ("tool", _) => diagnostic.with_help("a tool is set without `=`: `tool NAME`"),
+            (_, Some(meant)) => {
+                self.names.mark_used(meant);
+                diagnostic.did_you_mean(name.span, meant)
+            }
+            (_, None) => {
+                let at = Span::new(name.span.start, name.span.start);
+                diagnostic
+                    .with_help(format!(
+                        "declare it where it is first set: `var {} = ..`",
+                        name.value
+                    ))
+                    .replacing(at, "var ")
+            }
+        });
+    }
+
     /// The variable that is assigned; that is no use of it.
     fn assigned(&mut self, name: Name<'s>) -> Option<(Place, ValueType)> {
         let found = match self.names.find(name.value) {
             Found::Here(symbol) => symbol,
+            Found::Nothing => {
+                self.report_undeclared(name);
+                return None;
+            }
             Found::Outside(Symbol { meaning: Meaning::Local(..), name: first, .. }) => {
                 self.report_outer(name, first.span);
                 return None;
             }
             Found::Outside(symbol) => symbol,
-            Found::Nothing => {
-                let is_variable =
-                    |meaning| matches!(meaning, Meaning::Global(..) | Meaning::Local(..));
-                self.resolve(name, "a variable", is_variable);
-                return None;
-            }
         };
+        self.names.mark_assigned(name.value);
         let reason = match found.meaning {
             Meaning::Global(global, of_type) => return Some((Place::Global(global), of_type)),
             Meaning::Local(local, of_type) if of_type != ValueType::Item => {
@@ -513,6 +542,10 @@ fn settle(before: &mut Statement, wait: Statement) -> Option<Statement> {
     };
     before.span = before.span.to(wait.span);
     None
+}
+
+fn is_variable(meaning: Meaning) -> bool {
+    matches!(meaning, Meaning::Global(..) | Meaning::Local(..))
 }
 
 fn level(high: bool) -> Level {

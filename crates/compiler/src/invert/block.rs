@@ -212,7 +212,7 @@ impl<'p> Inverter<'p> {
             let mut group = match statement.kind {
                 StatementKind::Variable(_) => Vec::new(),
                 // Only the statements in its blocks are followed on the way.
-                _ if walk::blocks(statement).is_empty() => self.unit(&statements[unit.clone()]),
+                _ if statement.blocks().is_empty() => self.unit(&statements[unit.clone()]),
                 _ => {
                     let facts = self.facts.clone();
                     let group = self.unit(&statements[unit.clone()]);
@@ -295,7 +295,7 @@ impl<'p> Inverter<'p> {
             StatementKind::Fork(branches) => {
                 one(StatementKind::Fork(branches.iter().map(|branch| self.block(branch)).collect()))
             }
-            StatementKind::Variable(_) => Vec::new(),
+            StatementKind::Variable(_) | StatementKind::Allow(_) => Vec::new(),
             StatementKind::WithInReverse { .. }
             | StatementKind::Advance(_)
             | StatementKind::WaitUntil { .. }

@@ -315,7 +315,8 @@ impl<'s> Effect<'s> {
             | StatementKind::Wait(_)
             | StatementKind::Remember(_)
             | StatementKind::Checkpoint(_)
-            | StatementKind::Barrier(_) => Self::default(),
+            | StatementKind::Barrier(_)
+            | StatementKind::Allow(_) => Self::default(),
         }
     }
 

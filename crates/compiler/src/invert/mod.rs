@@ -24,7 +24,7 @@ mod reversal;
 mod walk;
 
 use crate::load::{self, Loaded, Loader};
-use crate::{compile, compile_loaded, merge};
+use crate::{allow, compile, compile_loaded, merge};
 use obverse_syntax::ast::{Item, Program};
 use obverse_syntax::codes::Code;
 use obverse_syntax::diagnostic::{Diagnostic, Severity};
@@ -84,6 +84,7 @@ fn invert_loaded(loaded: &Loaded, name: &str, sequence: &str) -> Result<Inverse,
     let (module, diagnostics) = compile_loaded(loaded);
     let Some(module) = module else { return Err(NoInverse::Diagnosed(diagnostics)) };
     let mut program = merge::parse(loaded).program;
+    allow::leave_out(&mut program);
     // Where the cell is, seen from the one file that the inverse is.
     for item in &mut program.items {
         if let (Item::Cell(path), Some(cell)) = (item, &module.cell) {

@@ -92,7 +92,11 @@ impl<'s> Plan<'s> {
                         plan.outputs.insert(entry.name.value, entry.number.value);
                     }
                 }
-                Item::Cell(_) | Item::Import(_) | Item::Error(_) | Item::AdvancedMove(_) => {}
+                Item::Cell(_)
+                | Item::Import(_)
+                | Item::Error(_)
+                | Item::AdvancedMove(_)
+                | Item::Allow(_) => {}
             }
         }
         plan.find_effects();
@@ -270,7 +274,7 @@ impl<'s> Plan<'s> {
                 StatementKind::Call { name, .. } => visit(name.value, &facts),
                 StatementKind::SkipInReverse(_) | StatementKind::ReplaceInReverse { .. } => {}
                 _ => {
-                    for block in walk::blocks(statement) {
+                    for block in statement.blocks() {
                         let mut inside = facts.clone();
                         inside.at_head(statement, self);
                         self.each_call(block, inside, visit);
@@ -451,7 +455,7 @@ fn inverted_calls<'s>(sequence: &'s Sequence<'s>) -> Vec<(&'s str, Span)> {
             match &statement.kind {
                 StatementKind::Call { name, .. } => calls.push((name.value, statement.span)),
                 kind if is_kept_whole(kind) => {}
-                _ => walk::blocks(statement).into_iter().for_each(|block| collect(block, calls)),
+                _ => statement.blocks().into_iter().for_each(|block| collect(block, calls)),
             }
         }
     }
@@ -532,7 +536,7 @@ fn needed(mut parts: Vec<Part<'_>>) -> Vec<Item<'_>> {
 
 fn name_of<'s>(item: &Item<'s>) -> Option<&'s str> {
     match item {
-        Item::Cell(_) | Item::Import(_) => None,
+        Item::Cell(_) | Item::Import(_) | Item::Allow(_) => None,
         Item::Signal(entry) => Some(entry.name.value),
         Item::Io(io) => Some(io.name.value),
         Item::Joints(joints) => Some(joints.name.value),

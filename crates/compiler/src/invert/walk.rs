@@ -7,49 +7,13 @@ use obverse_syntax::ast::{
 };
 use std::collections::BTreeSet;
 
-/// The blocks of a statement, in the order written.
-pub(super) fn blocks<'a, 's>(statement: &'a Statement<'s>) -> Vec<&'a Block<'s>> {
-    match &statement.kind {
-        StatementKind::If { then, otherwise, .. } => {
-            std::iter::once(then).chain(otherwise).collect()
-        }
-        StatementKind::WaitUntil { otherwise: block, .. }
-        | StatementKind::Speed { block, .. }
-        | StatementKind::Tool { block, .. } => block.iter().collect(),
-        StatementKind::While { body: block, .. }
-        | StatementKind::Repeat { body: block, .. }
-        | StatementKind::For { body: block, .. }
-        | StatementKind::Loop(block)
-        | StatementKind::Irreversible { block, .. }
-        | StatementKind::SkipInReverse(block)
-        | StatementKind::KeepInReverse(block)
-        | StatementKind::WithInReverse { block, .. } => vec![block],
-        StatementKind::Fork(branches) => branches.iter().collect(),
-        StatementKind::ReplaceInReverse { block, replacement } => vec![block, replacement],
-        StatementKind::Move { .. }
-        | StatementKind::Advance(_)
-        | StatementKind::Call { .. }
-        | StatementKind::Io(_)
-        | StatementKind::Wait(_)
-        | StatementKind::Primitive(_)
-        | StatementKind::Variable(_)
-        | StatementKind::Remember(_)
-        | StatementKind::Assign { .. }
-        | StatementKind::Break
-        | StatementKind::Return
-        | StatementKind::Checkpoint(_)
-        | StatementKind::Barrier(_)
-        | StatementKind::Throw(_) => Vec::new(),
-    }
-}
-
 /// A statement and every statement in it.
 pub(super) fn each_statement<'a, 's>(
     statement: &'a Statement<'s>,
     visit: &mut impl FnMut(&'a Statement<'s>),
 ) {
     visit(statement);
-    for block in blocks(statement) {
+    for block in statement.blocks() {
         each_in(block, visit);
     }
 }
@@ -101,7 +65,8 @@ pub(super) fn expressions<'a, 's>(statement: &'a Statement<'s>) -> Vec<&'a Expre
         | StatementKind::ReplaceInReverse { .. }
         | StatementKind::KeepInReverse(_)
         | StatementKind::Fork(_)
-        | StatementKind::Throw(_) => Vec::new(),
+        | StatementKind::Throw(_)
+        | StatementKind::Allow(_) => Vec::new(),
     }
 }
 

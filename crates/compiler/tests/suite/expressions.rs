@@ -122,8 +122,7 @@ fn updates_are_always_where_the_value_does_not_read_the_variable() {
         add.local.imm x 1
         add.local.imm x -5
         add.local.local x y
-        push.local y
-        sub.local x
+        sub.local.local x y
         int.add.locals x x
         store.local x
         int.mul.local.imm y 3

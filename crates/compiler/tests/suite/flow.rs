@@ -258,19 +258,18 @@ fn counted_loops_have_a_counter_each() {
         store.local x
         push.int 0
         push.int 9
-        for.enter 0 +12
-        for.top 0 +10
+        for.enter 0 +11
+        for.top 0 +9
         push.int 1
         push.local x
-        for.enter 1 +6
-        for.top 1 +4
-        push.counter 0
-        int.mul.imm 2
+        for.enter 1 +5
+        for.top 1 +3
+        int.mul.counter.imm 0 2
         add.local x
-        for.next 1 -4
-        for.exit 1 -6
-        for.next 0 -10
-        for.exit 0 -12
+        for.next 1 -3
+        for.exit 1 -5
+        for.next 0 -9
+        for.exit 0 -11
         push.int 1
         push.int 2
         for.enter 0 +5

@@ -111,6 +111,26 @@ fn what_is_imported_and_not_used_is_not_warned_about() {
     );
 }
 
+/// Nor is what only that names which is not used.
+#[test]
+fn what_is_imported_and_never_run_is_not_warned_about() {
+    let main = "import \"a.obv\" action own { toggle 1 } sequence main { wait 1 s }";
+    let imported = "io blink { toggle 0 } action offered { io blink }";
+    assert_eq!(findings(&[("main.obv", main), ("a.obv", imported)]), ["W0001 main.obv:1"]);
+}
+
+#[test]
+fn a_warning_is_allowed_in_its_own_file() {
+    let unread = "action offered { var unread = 1 }\nallow W0001 \"for nothing\"\n";
+    let in_file = "allow W0001 in file \"kept\"\naction other { var unread = 1 }";
+    let main = "import \"a.obv\"\nallow W0001 \"for an import\" import \"b.obv\"\n\
+                joints own = [0, 0, 0, 0, 0, 0] rad\nsequence main { wait 1 s }";
+    let mut found = findings(&[("main.obv", main), ("a.obv", unread), ("b.obv", in_file)]);
+    found.sort();
+    let expected = ["W0001 a.obv:1", "W0001 main.obv:3", "W0010 a.obv:2", "W0010 main.obv:2"];
+    assert_eq!(found, expected);
+}
+
 #[test]
 fn an_io_map_is_checked_where_it_is_used() {
     let main = "import \"io.obv\"\nsequence main {\n set lmap high\n set door low\n toggle home\n \

@@ -1,6 +1,7 @@
 //! The tests of the compiler, by source text: what each construct becomes, what each mistake is
 //! called and where, and that whatever compiles keeps the rules of the verifier.
 
+mod allow;
 mod codes;
 mod common;
 mod diagnostics;

@@ -3,8 +3,8 @@
 use super::piece::{Column, Glue, Member};
 use super::writer::{Style, Writer};
 use crate::ast::{
-    Behaviour, Change, Continuation, Depth, ErrorClause, Extent, Item, JointsDeclaration, Keyframe,
-    MoveClause, Otherwise, Recovery, Respond, Sequence, Severity, SignalKind,
+    Allow, Behaviour, Change, Continuation, Depth, ErrorClause, Extent, Item, JointsDeclaration,
+    Keyframe, MoveClause, Otherwise, Recovery, Respond, Sequence, Severity, SignalKind,
 };
 use crate::span::Spanned;
 
@@ -78,7 +78,17 @@ impl<'s> Writer<'s> {
             }
             Item::Variable(variable) => self.variable(variable),
             Item::Sequence(sequence) => self.sequence(sequence),
+            Item::Allow(allow) => self.allow(allow),
         }
+    }
+
+    /// `allow W0001 in file "why"`
+    pub(super) fn allow(&mut self, allow: &Allow<'s>) {
+        self.named("allow", allow.code.value);
+        if allow.in_file {
+            self.words(&["in", "file"]);
+        }
+        self.quoted(allow.reason.value);
     }
 
     fn joints(&mut self, joints: &JointsDeclaration<'s>) {

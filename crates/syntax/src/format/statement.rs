@@ -89,6 +89,7 @@ impl<'s> Writer<'s> {
             | StatementKind::KeepInReverse(_)
             | StatementKind::WithInReverse { .. } => self.reversal(&statement.kind),
             StatementKind::Throw(name) => self.named("throw", name.value),
+            StatementKind::Allow(allow) => self.allow(allow),
         }
     }
 
@@ -405,6 +406,7 @@ fn has_block(kind: &StatementKind<'_>) -> bool {
         | StatementKind::Return
         | StatementKind::Checkpoint(_)
         | StatementKind::Barrier(_)
-        | StatementKind::Throw(_) => false,
+        | StatementKind::Throw(_)
+        | StatementKind::Allow(_) => false,
     }
 }

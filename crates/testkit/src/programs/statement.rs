@@ -13,6 +13,9 @@ impl Generator<'_, '_> {
             }
             self.budget -= 1;
             self.frame.cost += self.frame.times;
+            if self.one_in(16)? {
+                self.line("allow W0002 \"it is made so\"");
+            }
             self.statement()?;
         }
         Ok(())

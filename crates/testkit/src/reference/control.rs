@@ -40,11 +40,15 @@ impl<'p> Interpreter<'p, '_> {
 
     /// Statements in a row.
     pub(super) fn block(&mut self, block: &'p Block<'p>) -> Run<Flow> {
-        for (index, statement) in block.statements.iter().enumerate() {
+        // What is allowed does nothing.
+        let statements: Vec<&'p Statement<'p>> =
+            block.statements.iter().filter(|statement| statement.allow().is_none()).collect();
+        for (index, &statement) in statements.iter().enumerate() {
             let flow = match &statement.kind {
                 StatementKind::Primitive(primitive) => {
-                    let before = block.statements[..index].iter().rev().map_while(as_primitive);
-                    let after = block.statements[index + 1..].iter().map_while(as_primitive);
+                    let (before, after) = (&statements[..index], &statements[index + 1..]);
+                    let before = before.iter().copied().rev().map_while(as_primitive);
+                    let after = after.iter().copied().map_while(as_primitive);
                     self.primitive(primitive, before, after)?;
                     Flow::Next
                 }

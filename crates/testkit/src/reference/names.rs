@@ -44,7 +44,7 @@ impl<'p> Names<'p> {
                 Item::Signal(entry) => {
                     names.signals.insert(entry.name.value, entry.number.value);
                 }
-                Item::Cell(_) | Item::Import(_) | Item::Variable(_) => {}
+                Item::Allow(_) | Item::Cell(_) | Item::Import(_) | Item::Variable(_) => {}
             }
         }
         names

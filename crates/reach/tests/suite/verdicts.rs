@@ -1,67 +1,9 @@
 //! What is said of points of small modules. A point is a checkpoint, a horizon is the reason of a
 //! barrier.
 
-use obverse_bytecode::{Verified, assemble, verify};
+use crate::common::{START, of_main, point, said, verified};
 use obverse_isa::Instr;
 use obverse_reach::{Horizon, Link, MAX_KEPT, Reach, Standing};
-
-fn verified(text: &str) -> Verified {
-    let module = match assemble(&format!("obvasm 1\n{text}")) {
-        Ok(module) => module,
-        Err(errors) => panic!("{errors:?}"),
-    };
-    match verify(module) {
-        Ok(verified) => verified,
-        Err(errors) => panic!("{errors:?}"),
-    }
-}
-
-/// The instruction of the checkpoint of this name.
-fn point(program: &Verified, name: &str) -> u32 {
-    let module = program.module();
-    let is_it = |instr: &Instr| match *instr {
-        Instr::Checkpoint { checkpoint } => module.checkpoints[checkpoint.index()] == name,
-        _ => false,
-    };
-    let at = module.code.iter().position(is_it);
-    at.unwrap_or_else(|| panic!("no checkpoint {name}")) as u32
-}
-
-/// Where going back from a checkpoint may end.
-fn ends(program: &Verified, name: &str) -> Vec<String> {
-    let reach = Reach::of(program.module());
-    let at = point(program, name);
-    let verdict = reach.at(at);
-    let every: Vec<Horizon> = reach.every(at).into_iter().collect();
-    assert_eq!(verdict.horizons[..], every[..every.len().min(MAX_KEPT)], "both ways to ask");
-    let told = verdict.horizons.iter().map(|horizon| match *horizon {
-        Horizon::Start => "start".to_owned(),
-        Horizon::Never(pc) => reach.reason(pc).to_owned(),
-    });
-    told.collect()
-}
-
-#[track_caller]
-fn said(text: &str, expected: &[(&str, &[&str])]) {
-    let names: String =
-        expected.iter().map(|(name, _)| format!(".checkpoint \"{name}\"\n")).collect();
-    let program = verified(&format!("{names}{text}"));
-    for (name, horizons) in expected {
-        assert_eq!(ends(&program, name), *horizons, "at {name}");
-    }
-}
-
-const START: &str = "
-    .function \"$start\" start
-    enter
-    call main
-    halt
-";
-
-fn of_main(body: &str, expected: &[(&str, &[&str])]) {
-    let text = format!("{START}.function \"main\" sequence\nenter\n{body}\nreturn");
-    said(&text, expected);
-}
 
 #[test]
 fn a_barrier_is_what_comes_after_it_ends_at() {

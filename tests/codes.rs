@@ -1,0 +1,36 @@
+//! The index of all diagnostics, docs/codes.md, which `UPDATE=1 cargo test --test codes` writes.
+//! What each code is for is held by tests of the crates that report it.
+
+use obverse_syntax::codes::Code;
+use obverse_syntax::index::page;
+
+const PATH: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/docs/codes.md");
+
+#[test]
+fn the_index_is_fresh() {
+    let page = page();
+    if std::env::var_os("UPDATE").is_some() {
+        let folder = std::path::Path::new(PATH).parent().expect("a folder");
+        std::fs::create_dir_all(folder).expect("docs can be made");
+        std::fs::write(PATH, &page).expect("docs/codes.md can be written");
+    }
+    let written = std::fs::read_to_string(PATH).unwrap_or_default();
+    assert!(
+        written == page,
+        "docs/codes.md is not what the table says: `UPDATE=1 cargo test --test codes` writes it"
+    );
+}
+
+#[test]
+fn every_code_has_a_section_with_its_reason() {
+    let page = page();
+    for code in Code::ALL {
+        assert_eq!(page.matches(&format!("\n## {code}\n")).count(), 1, "{code}");
+        assert!(page.contains(&format!("| [{code}](#{})", code.as_str().to_lowercase())), "{code}");
+        let reason = code.reason();
+        let words = |text: &str| text.split_whitespace().collect::<Vec<_>>().join(" ");
+        assert!(words(&page).contains(&words(reason)), "{code}");
+        assert!(reason.ends_with('.') && reason.len() > 60, "{code}: {reason}");
+        assert!(!code.title().ends_with('.'), "{code}");
+    }
+}
