@@ -21,6 +21,8 @@ const MAX_KEPT: usize = 400_000;
 
 /// What is left for what was not tried, when a contact may press harder in a run.
 const FELT_MARGIN: f64 = 1.25;
+/// What presses harder by less than this, in newtons, does not.
+const LEAST_N: f64 = 0.01;
 /// What meets something after this part of its way to a place of contact may get there in a run.
 const FELT_FROM: f64 = 0.9;
 
@@ -296,8 +298,8 @@ impl Worlds {
         }
     }
 
-    /// Whether a motion ends where contact stopped the arm, so hard pressed there that it may be
-    /// too hard in a run: when the force is read decides where exactly the arm was stopped.
+    /// Whether a motion ends or begins where contact stopped the arm, pressed so hard there that it
+    /// may be too hard in a run: when the force is read decides where exactly the arm is stopped.
     fn presses_where_felt(
         &mut self,
         world: &World,
@@ -305,33 +307,53 @@ impl Worlds {
         guard: Guard,
         (outcome, after): (&Result<MotionReport, Fault>, &Plan),
     ) -> bool {
-        let felt = match &motion.goal {
-            Goal::Joints(to) => self.felt.get(&to.bits()).copied(),
+        let felt = |joints: &JointConfiguration| self.felt.get(&joints.bits()).copied();
+        let begins = felt(&world.plan.workcell().joints());
+        let ends = match &motion.goal {
+            Goal::Joints(to) => felt(to),
             Goal::Pose(_) => None,
-            Goal::Displaced { from, .. } | Goal::Offset { from, .. } => {
-                self.felt.get(&from.bits()).copied()
-            }
+            Goal::Displaced { from, .. } | Goal::Offset { from, .. } => felt(from),
         };
+        let is_stopped = matches!(outcome, Ok(report) if report.end == MotionEnd::StoppedByForce);
+        let is_felt = matches!(guard, Guard::Ends(_));
+        let mut most_n: f64 = 0.0;
+        if guard != Guard::None && (is_stopped || world.plan.contact_n() > 0.0) {
+            // Whether the force is read in time may decide whether this is a fault.
+            let phases = world.plan.after_in_phases(motion);
+            let faults = |outcome: &Result<MotionReport, Fault>| {
+                outcome.clone().and_then(|report| stopped_is_fault(report, guard)).is_err()
+            };
+            if phases.iter().any(|(other, _)| faults(other) != faults(outcome)) {
+                return true;
+            }
+            most_n = phases.iter().map(|(_, plan)| plan.contact_n()).fold(0.0, f64::max);
+        }
         let report = match outcome {
             Ok(report) => report,
             Err(Fault::Collision { fraction, .. }) => {
-                return felt.is_some() && *fraction >= FELT_FROM;
+                return begins.is_some() && *fraction <= 1.0 - FELT_FROM
+                    || ends.is_some() && *fraction >= FELT_FROM;
             }
             Err(_) => return false,
         };
+        let cell = self.cell();
+        let (stop_n, bias_n) = (cell.contact.stop_force_n, cell.force_sensor.bias_n);
         let (joints, contact_n) = (after.workcell().joints().bits(), after.contact_n());
-        if matches!(guard, Guard::Ends(_)) && report.end == MotionEnd::StoppedByForce {
-            let most_n = world.plan.contact_after_at_most_n(motion);
+        let peak_n = report.peak_force_n;
+        // What leads away from the contact presses nowhere harder than where it begins.
+        let presses = peak_n > world.plan.contact_n() + bias_n.abs() + LEAST_N;
+        let may_collide = presses && begins.is_some_and(|times| peak_n * times > stop_n);
+        if is_felt && is_stopped {
             self.felt.insert(joints, FELT_MARGIN * (most_n / contact_n).max(1.0));
-            return false;
+            return may_collide;
         }
-        let Some(times) = felt else { return false };
+        let Some(times) = ends else { return may_collide };
         self.felt.insert(joints, times);
-        let mut most_n = self.cell().contact.stop_force_n;
-        if let Guard::Faults(Some(limit_n)) = guard {
-            most_n = most_n.min(limit_n);
-        }
-        !matches!(guard, Guard::Ends(_)) && contact_n * times > most_n
+        let allowed_n = match guard {
+            Guard::Faults(Some(limit_n)) => limit_n.min(stop_n),
+            _ => stop_n,
+        };
+        may_collide || !is_felt && contact_n * times > allowed_n
     }
 
     /// Of a motion that begins nobody knows where, only its goal can be looked at.
@@ -357,7 +379,9 @@ impl Worlds {
             }
             Err(fault) => {
                 let after = self.lost(world);
-                self.said(of_fault(&fault, &world.plan, &by_joints), after)
+                // On the way from where it is, a run may meet another fault before.
+                let verdict = of_fault(&fault, &world.plan, &by_joints);
+                self.said(Verdict { fault: None, ..verdict }, after)
             }
         }
     }
@@ -404,6 +428,8 @@ impl World {
             Stand::Known => {
                 numbers.push(0);
                 numbers.extend(self.plan.workcell().joints().bits());
+                // A force that is there already is not read as one that comes.
+                numbers.push(self.plan.contact_n().to_bits());
             }
             Stand::OnLineFrom(start) => {
                 numbers.push(1);

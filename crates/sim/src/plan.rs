@@ -74,17 +74,17 @@ impl Plan {
         (outcome != Err(Fault::Stopped)).then_some((outcome, after))
     }
 
-    /// The largest contact force that a motion may end with, in newtons: the force is read from
-    /// time to time, and when that is, relative to the motion, is not known beforehand.
+    /// What may come of a motion that is stopped by force: that is read from time to time, and when,
+    /// relative to the motion, is not known beforehand.
     #[must_use]
-    pub fn contact_after_at_most_n(&self, motion: &Motion) -> f64 {
+    pub fn after_in_phases(&self, motion: &Motion) -> Vec<(Result<MotionReport, Fault>, Self)> {
         let sample_s = self.sim.cell().force_sensor.sample_s;
-        let contact_n = |phase: u32| {
+        let after = |phase: u32| {
             let mut later = self.clone();
             later.sim.now_s += sample_s * f64::from(phase) / f64::from(PHASES);
-            later.after(motion).map_or(0.0, |(_, after)| after.contact_n())
+            later.after(motion)
         };
-        (0..PHASES).map(contact_n).fold(0.0, f64::max)
+        (0..PHASES).filter_map(after).collect()
     }
 
     /// The contact force where the arm stands, in newtons.
