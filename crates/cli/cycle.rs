@@ -69,6 +69,8 @@ pub(crate) struct Cycle<'m> {
     pub(crate) actions: BTreeMap<u32, Times>,
     /// By instruction.
     pub(crate) readings: BTreeMap<u32, Vec<Reading>>,
+    /// Whether branches of a fork took turns.
+    pub(crate) has_branches: bool,
     /// The guarded moves, and whether contact stopped them.
     pub(crate) guarded: (u64, u64),
 }
@@ -85,6 +87,7 @@ impl<'m> Cycle<'m> {
             sequences: BTreeMap::new(),
             actions: BTreeMap::new(),
             readings: BTreeMap::new(),
+            has_branches: false,
             guarded: (0, 0),
         }
     }
@@ -151,6 +154,7 @@ impl Observer for Cycle<'_> {
         let now_s = cell.now_s();
         let took_s = now_s - self.last_s;
         self.last_s = now_s;
+        self.has_branches |= !event.branches.is_empty();
         self.pass(&event.branches, took_s);
         match event.instr {
             Instr::Call { function, .. } => {

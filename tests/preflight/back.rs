@@ -126,3 +126,44 @@ sequence main {
     assert_eq!(there, [fine, fine, fine, collides]);
     assert_eq!(back, [collides, fine, collides]);
 }
+
+/// How hard the arm presses where contact stopped it depends on when the force is read: what goes
+/// there again without a guard may be stopped.
+#[test]
+fn going_back_to_a_hard_contact_is_not_known() {
+    let program = "
+item part { keyframe above = [0, 0, -100] mm }
+advanced move feel { distance 120 mm down in base; stop if force > 5 N; speed SPEED }
+sequence main {
+  move to part.above
+  advance feel
+  move to part.above linearly
+}";
+    let cell = with_wall(450, 150, 60);
+    let back = |speed| {
+        let found = Found::of(&cell, &program.replace("SPEED", speed));
+        found.at_line(7).reverse.as_ref().map(|back| back.verdict.reason)
+    };
+    assert_eq!(back("very fast"), Some(Reason::StopNotKnown));
+    assert_eq!(back("very slow"), Some(Reason::Fine));
+}
+
+/// Along a table that the tool touches all the way.
+#[test]
+fn a_long_way_in_contact_is_not_looked_at_to_its_end() {
+    let table = "
+[[fixture]]
+name = \"table\"
+place = { xyz_mm = [450, 0, 85] }
+body = [{ cuboid_mm = [200, 600, 170] }]
+";
+    let program = "
+item part { keyframe above = [0, 0, -100] mm }
+sequence main { move to part.above; move LENGTH -y in base }";
+    let reason = |length| {
+        let found = Found::of(&format!("{CELL}{table}"), &program.replace("LENGTH", length));
+        found.forward(1).verdict.reason
+    };
+    assert_eq!(reason("50 mm"), Reason::Fine);
+    assert_eq!(reason("300 mm"), Reason::LongContact);
+}

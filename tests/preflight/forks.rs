@@ -58,6 +58,23 @@ fn branches_take_turns_in_their_order() {
     assert!(left.report.is_fine(true), "{:?}", left.report);
 }
 
+/// The same in the language, where one branch alone moves the arm.
+#[test]
+fn what_one_branch_takes_the_other_one_carries() {
+    let program = "
+item part { keyframe above = [0, 0, -100] mm  keyframe grasp = [0, 0, 0] mm }
+item spot { keyframe above = [0, 0, -30] mm }
+sequence main {
+  move to part.above
+  move to part.grasp linearly
+  fork { set 0 LEVEL } and { move to part.above linearly  move to spot.above }
+}";
+    let taken = Found::of(&wall(), &program.replace("LEVEL", "high"));
+    assert_eq!(taken.forward(3).verdict.reason, Reason::HeldCollides);
+    let left = Found::of(&wall(), &program.replace("LEVEL", "low"));
+    assert!(left.report.is_fine(true), "{:?}", left.report);
+}
+
 /// A wait is an act: it takes a turn, and lets the arm leave.
 #[test]
 fn every_act_takes_a_turn() {

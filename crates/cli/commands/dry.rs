@@ -25,6 +25,14 @@ const NOT_SHOWN: [&str; 3] = [
     "a guarded move stops where it touches now; in another contact it takes another time, or fails",
 ];
 
+/// What it does not show either, of a program with forks.
+const NOT_SHOWN_OF_FORKS: &str =
+    "the branches of a fork take turns here; what a cell does at once takes less time";
+
+fn not_shown(cycle: &Cycle<'_>) -> impl Iterator<Item = &'static str> {
+    NOT_SHOWN.into_iter().chain(cycle.has_branches.then_some(NOT_SHOWN_OF_FORKS))
+}
+
 /// A line of a table: its name, the line it is written in, and its times.
 struct Row {
     name: String,
@@ -96,7 +104,7 @@ fn tell(module: &Module, cycle: &Cycle<'_>, ending: &Ending, total_s: f64) {
         write::line(&format!("\n{guarded} guarded moves, {stopped} of them stopped by contact"));
     }
     write::line("\nwhat a dry run does not show:");
-    NOT_SHOWN.iter().for_each(|what| write::line(&format!("- {what}")));
+    not_shown(cycle).for_each(|what| write::line(&format!("- {what}")));
 }
 
 fn table(what: &str, rows: &[Row], total_s: f64) {
@@ -210,6 +218,6 @@ fn tell_machines(module: &Module, cycle: &Cycle<'_>, ending: &Ending, total_s: f
     more.insert("time_s".to_owned(), json!(total_s));
     more.insert("guarded_moves".to_owned(), json!(cycle.guarded.0));
     more.insert("stopped_by_contact".to_owned(), json!(cycle.guarded.1));
-    more.insert("not_shown".to_owned(), json!(NOT_SHOWN));
+    more.insert("not_shown".to_owned(), not_shown(cycle).collect());
     report::summary(ending.code(), Map::new(), more);
 }

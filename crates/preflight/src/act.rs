@@ -75,7 +75,7 @@ impl Explorer<'_> {
             }
             // The limit of a force is above zero, or the machine traps.
             Instr::SettingSet { setting: Setting::ReverseForceLimit, .. }
-                if operands.real(0).is_some_and(|limit_n| !(limit_n > 0.0)) =>
+                if operands.real(0).is_some_and(|limit_n| limit_n.is_nan() || limit_n <= 0.0) =>
             {
                 None
             }

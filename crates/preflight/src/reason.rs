@@ -203,4 +203,12 @@ reasons! {
         "A sequence that calls itself is followed call by call where it is known how often it \
          does; otherwise only the first calls are looked at, and what the arm does in those within \
          them is not known."
+    StopNotKnown "P0609" NotKnown "how hard it presses where contact stopped the arm is not known"
+        "Where a guarded move stops, and how hard it presses then, depends on when the force is \
+         read. Coming there again without a guard, or pressing on from there, the arm may press \
+         harder than the workcell allows, or not as hard.\n\nLet the guarded move press less \
+         (slower, with a lower limit), or go back over it with `opposite force in reverse`."
+    LongContact "P0610" NotKnown "it moves in contact for longer than is looked at"
+        "Something touches all along the way, and the check looks at the first part of it alone. \
+         Does the arm stand free of everything where the move begins?"
 }

@@ -16,7 +16,7 @@ pub struct Verdict {
     pub fraction: Option<f64>,
     /// What touches what.
     pub contact: Option<Contact>,
-    /// The fault that a run ends with there.
+    /// The fault that a run ends with there, if that is known.
     pub fault: Option<FaultKind>,
 }
 

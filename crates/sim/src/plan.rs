@@ -12,6 +12,13 @@ use crate::sim::Sim;
 use obverse_geometry::JointConfiguration;
 use obverse_workcell::{Arm, DigitalIo, Fault, Gripper, Motion, MotionReport, Safety};
 
+/// How often one motion is looked at for contact: enough for a quarter of a metre along something
+/// that it touches all the way.
+const LOOKS_MAX: u32 = 1_000;
+
+/// How many times within a period of the force sensor a motion is begun at.
+const PHASES: u32 = 8;
+
 /// A workcell that can be asked what would come of a command.
 #[derive(Clone, Debug)]
 pub struct Plan {
@@ -45,7 +52,9 @@ impl Plan {
     /// A cell at its start, without chance.
     #[must_use]
     pub fn new(cell: &Cell) -> Self {
-        Self { sim: Sim::new(&cell.nominal(), 0) }
+        let mut sim = Sim::new(&cell.nominal(), 0);
+        sim.looks_max = Some(LOOKS_MAX);
+        Self { sim }
     }
 
     /// The workcell as it would be now.
@@ -54,12 +63,34 @@ impl Plan {
         &self.sim
     }
 
-    /// What would come of a motion, and how the workcell would be left.
-    pub fn after(&self, motion: &Motion) -> (Result<MotionReport, Fault>, Self) {
+    /// What would come of a motion, and how the workcell would be left; none if it moves in contact
+    /// for longer than is looked at.
+    #[must_use]
+    pub fn after(&self, motion: &Motion) -> Option<(Result<MotionReport, Fault>, Self)> {
         let mut after = self.clone();
         let outcome = after.sim.execute(motion);
         after.sim.release();
-        (outcome, after)
+        // Nothing else stops a workcell in thought.
+        (outcome != Err(Fault::Stopped)).then_some((outcome, after))
+    }
+
+    /// What may come of a motion that is stopped by force: that is read from time to time, and when,
+    /// relative to the motion, is not known beforehand.
+    #[must_use]
+    pub fn after_in_phases(&self, motion: &Motion) -> Vec<(Result<MotionReport, Fault>, Self)> {
+        let sample_s = self.sim.cell().force_sensor.sample_s;
+        let after = |phase: u32| {
+            let mut later = self.clone();
+            later.sim.now_s += sample_s * f64::from(phase) / f64::from(PHASES);
+            later.after(motion)
+        };
+        (0..PHASES).filter_map(after).collect()
+    }
+
+    /// The contact force where the arm stands, in newtons.
+    #[must_use]
+    pub fn contact_n(&self) -> f64 {
+        self.sim.force_n
     }
 
     /// Where a motion would end if it met nothing.

@@ -34,6 +34,8 @@ pub struct Sim {
     /// The contact force where the arm stands, in newtons.
     pub(crate) force_n: f64,
     pub(crate) last_motion: MotionReport,
+    /// How often one motion may be looked at for contact, if not as often as it takes.
+    pub(crate) looks_max: Option<u32>,
 }
 
 impl Sim {
@@ -56,6 +58,7 @@ impl Sim {
                 duration_s: 0.0,
             },
             world: Arc::new(world),
+            looks_max: None,
         };
         // A gripper that is closed without power holds what is in it from the start.
         if cell.gripper.is_some_and(|gripper| !gripper.closed_level) {

@@ -54,6 +54,8 @@ pub(crate) enum End {
     Reached,
     /// The filtered force exceeded the limit.
     Force,
+    /// It takes more looks than are allowed.
+    GivenUp,
     /// A body met something and was pressed too hard.
     Collision { mover: Mover, owner: Owner, force_n: f64 },
 }
@@ -111,6 +113,8 @@ pub(crate) struct Sweep<'a> {
     moving: Vec<Moving>,
     pairs: Vec<Pair>,
     peg: Option<HeldPeg>,
+    /// How often all pairs may be looked at, if not as often as it takes.
+    pub(crate) looks_max: Option<u32>,
 }
 
 impl<'a> Sweep<'a> {
@@ -130,6 +134,7 @@ impl<'a> Sweep<'a> {
             moving: Vec::new(),
             pairs: Vec::new(),
             peg: HeldPeg::of(cell, items),
+            looks_max: None,
         };
         if !(world.fixed.is_empty() && sweep.resting.is_empty()) {
             sweep.moving = moving(cell, route, items, tool);
@@ -193,8 +198,13 @@ impl<'a> Sweep<'a> {
         self.guarded = limit_n.is_some();
         let mut reader = Reader::new(sensor, self.route, limit_n, now_s, force_n);
         let mut before = Look { fraction: 0.0, force_n };
-        let mut fraction = 0.0;
+        let (mut fraction, mut looks) = (0.0, 0);
         loop {
+            if self.looks_max.is_some_and(|looks_max| looks >= looks_max) {
+                let (peak_n, force_n) = (reader.peak_n(), before.force_n);
+                return Outcome { fraction, end: End::GivenUp, peak_n, force_n };
+            }
+            looks += 1;
             let seen = self.look(fraction);
             // A guard that reads late still stops the motion, but where it began pressed already.
             if let Some(index) = seen.collided.filter(|index| self.pairs[*index].begins_pressed) {

@@ -24,12 +24,9 @@ impl Sim {
         let tool = route::tool(&world.cell, motion.tool)?;
         let route = Route::plan(&world.cell, &self.joints, motion)?;
         let until = interruption.unwrap_or(1.0);
-        let outcome = Sweep::new(&world, &route, &self.items, tool).run(
-            until,
-            self.now_s,
-            self.force_n,
-            motion.force_limit_n,
-        );
+        let mut sweep = Sweep::new(&world, &route, &self.items, tool);
+        sweep.looks_max = self.looks_max;
+        let outcome = sweep.run(until, self.now_s, self.force_n, motion.force_limit_n);
         self.joints = route.joints_at(outcome.fraction);
         let duration_s = route.profile.time_at_s(outcome.fraction);
         self.now_s += duration_s;
@@ -38,6 +35,10 @@ impl Sim {
             End::Reached if interruption.is_some() => return Err(self.protective_stop(until)),
             End::Reached => MotionEnd::Reached,
             End::Force => MotionEnd::StoppedByForce,
+            End::GivenUp => {
+                self.stopped = true;
+                return Err(Fault::Stopped);
+            }
             End::Collision { mover, owner, force_n } => {
                 self.stopped = true;
                 return Err(Fault::Collision {

@@ -72,7 +72,7 @@ fn compare(world: &World, route: &Route) -> Option<bool> {
             Some(true)
         }
         End::Reached => Some(false),
-        End::Force => panic!("a motion without a limit was stopped by one"),
+        End::Force | End::GivenUp => panic!("a motion without a limit was stopped by one"),
     }
 }
 
