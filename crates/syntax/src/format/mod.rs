@@ -1,9 +1,9 @@
 //! Source text in its canonical layout, and syntax trees as source text.
 //!
-//! One writer walks the tree and says of which pieces it consists ([`writer`], and beside it what
+//! One writer walks the tree and says of which pieces it consists (`writer`, and beside it what
 //! is written of declarations, statements and expressions); one layout makes lines of the pieces
-//! ([`layout`], `line`). With a source text the pieces are its tokens, with the comments between
-//! them ([`cursor`]); without one, those that the tree asks for. What a program means is not known
+//! (`layout`, `line`). With a source text the pieces are its tokens, with the comments between
+//! them (`cursor`); without one, those that the tree asks for. What a program means is not known
 //! here.
 //!
 //! Blocks stay on one line if they were written on one and fit; rows of statements with `;` between
