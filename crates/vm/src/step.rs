@@ -532,7 +532,8 @@ impl Machine<'_> {
         while outcome.is_ok() && !is_there(&self.state) {
             outcome = match self.hot_reverse::<false>(floor) {
                 Exit::Trap(at, kind) => Err(self.trapped(at, kind)),
-                Exit::Bound if self.state.steps() <= floor => {
+                // A count that went below nothing, as one that was tampered with can, is below it.
+                Exit::Bound if self.state.steps().cast_signed() <= floor.cast_signed() => {
                     Err(self.trapped(until, TrapKind::Foreign))
                 }
                 Exit::Slow if !is_there(&self.state) => self.slow_reverse(host),
