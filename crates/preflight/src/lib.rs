@@ -13,6 +13,7 @@ mod act;
 mod back;
 mod command;
 mod explore;
+mod felt;
 mod notes;
 pub mod reason;
 mod report;

@@ -4,11 +4,12 @@
 //! motion once. Knows nothing of programs.
 
 use crate::command::{Aim, Command, Guard};
+use crate::felt::{Felt, as_taken};
 use crate::reason::Reason;
 use crate::verdict::{Verdict, of_fault};
-use obverse_geometry::{JOINT_COUNT, JointConfiguration};
+use obverse_geometry::JointConfiguration;
 use obverse_sim::{Cell, Plan, Sim};
-use obverse_workcell::{Arm, Fault, Goal, Gripper, Motion, MotionEnd, MotionReport, Path};
+use obverse_workcell::{Arm, Fault, Gripper, Motion, MotionReport, Path};
 use std::collections::HashMap;
 use std::rc::Rc;
 
@@ -18,13 +19,6 @@ const MAX_QUESTIONS: usize = 20_000;
 const MAX_LOOKS: usize = 2_000_000;
 /// The most workcells that are kept, times the items in each and a few for the rest.
 const MAX_KEPT: usize = 400_000;
-
-/// What is left for what was not tried, when a contact may press harder in a run.
-const FELT_MARGIN: f64 = 1.25;
-/// What presses harder by less than this, in newtons, does not.
-const LEAST_N: f64 = 0.01;
-/// What meets something after this part of its way to a place of contact may get there in a run.
-const FELT_FROM: f64 = 0.9;
 
 /// A workcell, among those of one check.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
@@ -68,9 +62,7 @@ pub(crate) struct Worlds {
     list: Vec<World>,
     by_numbers: HashMap<Vec<u64>, WorldId>,
     answers: HashMap<(WorldId, Vec<u64>), Answer>,
-    /// Joints where contact stopped the arm, or counted from there, and how many times as hard as
-    /// here it may press in a run.
-    felt: HashMap<[u64; JOINT_COUNT], f64>,
+    felt: Felt,
     gripper_output: Option<u16>,
     max_worlds: usize,
     max_questions: usize,
@@ -98,7 +90,7 @@ impl Worlds {
             list: Vec::new(),
             by_numbers: HashMap::new(),
             answers: HashMap::new(),
-            felt: HashMap::new(),
+            felt: Felt::default(),
             gripper_output,
             max_worlds,
             max_questions,
@@ -268,11 +260,11 @@ impl Worlds {
             };
             return self.unclear(Reason::LongContact, after);
         };
-        let presses = self.presses_where_felt(world, motion, guard, (&outcome, &plan));
-        match outcome.and_then(|report| stopped_is_fault(report, guard)) {
+        let is_open = self.felt.decides(&world.plan, motion, guard, (&outcome, &plan));
+        match outcome.and_then(|report| as_taken(report, guard)) {
             Ok(report) => {
                 let after = self.keep(World { plan, ..world.clone() });
-                let reason = match (world.knows_items, presses) {
+                let reason = match (world.knows_items, is_open) {
                     (false, _) => Reason::HeldNotKnown,
                     (true, true) => Reason::StopNotKnown,
                     (true, false) => Reason::Fine,
@@ -290,70 +282,12 @@ impl Worlds {
                     (None, Ok(end)) => self.placed(world, end),
                     (None, Err(_)) => self.lost(world),
                 };
-                match presses {
+                match is_open {
                     true => self.unclear(Reason::StopNotKnown, after),
                     false => self.said(of_fault(&fault, &world.plan, motion), after),
                 }
             }
         }
-    }
-
-    /// Whether a motion ends or begins where contact stopped the arm, pressed so hard there that it
-    /// may be too hard in a run: when the force is read decides where exactly the arm is stopped.
-    fn presses_where_felt(
-        &mut self,
-        world: &World,
-        motion: &Motion,
-        guard: Guard,
-        (outcome, after): (&Result<MotionReport, Fault>, &Plan),
-    ) -> bool {
-        let felt = |joints: &JointConfiguration| self.felt.get(&joints.bits()).copied();
-        let begins = felt(&world.plan.workcell().joints());
-        let ends = match &motion.goal {
-            Goal::Joints(to) => felt(to),
-            Goal::Pose(_) => None,
-            Goal::Displaced { from, .. } | Goal::Offset { from, .. } => felt(from),
-        };
-        let is_stopped = matches!(outcome, Ok(report) if report.end == MotionEnd::StoppedByForce);
-        let is_felt = matches!(guard, Guard::Ends(_));
-        let mut most_n: f64 = 0.0;
-        if guard != Guard::None && (is_stopped || world.plan.contact_n() > 0.0) {
-            // Whether the force is read in time may decide whether this is a fault.
-            let phases = world.plan.after_in_phases(motion);
-            let faults = |outcome: &Result<MotionReport, Fault>| {
-                outcome.clone().and_then(|report| stopped_is_fault(report, guard)).is_err()
-            };
-            if phases.iter().any(|(other, _)| faults(other) != faults(outcome)) {
-                return true;
-            }
-            most_n = phases.iter().map(|(_, plan)| plan.contact_n()).fold(0.0, f64::max);
-        }
-        let report = match outcome {
-            Ok(report) => report,
-            Err(Fault::Collision { fraction, .. }) => {
-                return begins.is_some() && *fraction <= 1.0 - FELT_FROM
-                    || ends.is_some() && *fraction >= FELT_FROM;
-            }
-            Err(_) => return false,
-        };
-        let cell = self.cell();
-        let (stop_n, bias_n) = (cell.contact.stop_force_n, cell.force_sensor.bias_n);
-        let (joints, contact_n) = (after.workcell().joints().bits(), after.contact_n());
-        let peak_n = report.peak_force_n;
-        // What leads away from the contact presses nowhere harder than where it begins.
-        let presses = peak_n > world.plan.contact_n() + bias_n.abs() + LEAST_N;
-        let may_collide = presses && begins.is_some_and(|times| peak_n * times > stop_n);
-        if is_felt && is_stopped {
-            self.felt.insert(joints, FELT_MARGIN * (most_n / contact_n).max(1.0));
-            return may_collide;
-        }
-        let Some(times) = ends else { return may_collide };
-        self.felt.insert(joints, times);
-        let allowed_n = match guard {
-            Guard::Faults(Some(limit_n)) => limit_n.min(stop_n),
-            _ => stop_n,
-        };
-        may_collide || !is_felt && contact_n * times > allowed_n
     }
 
     /// Of a motion that begins nobody knows where, only its goal can be looked at.
@@ -401,16 +335,6 @@ impl Worlds {
 
     fn said(&self, verdict: Verdict, after: WorldId) -> Answer {
         Answer { verdict: Rc::new(verdict), after, otherwise: None, report: None }
-    }
-}
-
-/// What came of a motion, as the machine takes it.
-fn stopped_is_fault(report: MotionReport, guard: Guard) -> Result<MotionReport, Fault> {
-    match (report.end, guard) {
-        (MotionEnd::StoppedByForce, Guard::Faults(Some(limit_n))) => {
-            Err(Fault::ForceLimit { force_n: report.peak_force_n, limit_n })
-        }
-        _ => Ok(report),
     }
 }
 

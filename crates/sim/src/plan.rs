@@ -74,8 +74,8 @@ impl Plan {
         (outcome != Err(Fault::Stopped)).then_some((outcome, after))
     }
 
-    /// What may come of a motion that is stopped by force: that is read from time to time, and when,
-    /// relative to the motion, is not known beforehand.
+    /// What may come of a motion that is stopped by force: that is read from time to time, and
+    /// when, relative to the motion, is not known beforehand.
     #[must_use]
     pub fn after_in_phases(&self, motion: &Motion) -> Vec<(Result<MotionReport, Fault>, Self)> {
         let sample_s = self.sim.cell().force_sensor.sample_s;
