@@ -14,11 +14,8 @@ use std::collections::BTreeSet;
 /// How many modules each law sees.
 const RUNS: u64 = 4_000;
 
-/// How many modules and how many programs the laws of reach see.
-const REACH_RUNS: u64 = 10_000;
-
-/// How many programs the laws of the front end alone see, which are cheap.
-const FRONT_RUNS: u64 = 10_000;
+/// How many those see that are cheap, or that hold what people rely on before anything moves.
+const MANY_RUNS: u64 = 10_000;
 
 /// Random bytes that follow from a number.
 fn bytes(seed: u64) -> Vec<u8> {
@@ -34,11 +31,6 @@ fn bytes(seed: u64) -> Vec<u8> {
 }
 
 /// The law holds of every program, and of at least so many of a hundred it says something.
-fn holds(name: &str, law: fn(&mut Unstructured<'_>) -> Result<bool>, least: u64) {
-    holds_of(RUNS, name, law, least);
-}
-
-/// The same for so many programs.
 fn holds_of(runs: u64, name: &str, law: fn(&mut Unstructured<'_>) -> Result<bool>, least: u64) {
     let number = |variable: &str| std::env::var(variable).ok().and_then(|text| text.parse().ok());
     let alone: Option<u64> = number("LAW_SEED");
@@ -56,17 +48,17 @@ fn holds_of(runs: u64, name: &str, law: fn(&mut Unstructured<'_>) -> Result<bool
 }
 
 macro_rules! laws {
-    ($($module:ident: $($name:ident >= $least:literal)*;)*) => {$($(
+    ($($module:ident($runs:ident): $($name:ident >= $least:literal)*;)*) => {$($(
         #[test]
         fn $name() {
-            holds(stringify!($name), $module::$name, $least);
+            holds_of($runs, stringify!($name), $module::$name, $least);
         }
     )*)*};
 }
 
 // Of a hundred runs, how many must really be compared.
 laws! {
-    machine_laws:
+    machine_laws(MANY_RUNS):
         there_and_back >= 100
         runs_are_steps >= 90
         parsimony >= 100
@@ -76,12 +68,12 @@ laws! {
         write_ahead_with_blocks >= 60
         turns >= 12
         round_trips >= 100;
-    preflight_laws: foretells >= 60 foretells_of_modules >= 10;
-    format_laws: formats >= 100 cut_off >= 100;
-    invert_laws: inverts_twice >= 45 inverse_goes_back >= 45 inverts_anything_twice >= 20;
-    laws: compiles >= 100 agrees_forward >= 95 agrees_backward >= 75;
-    files: files_are_one_program >= 60;
-    word_laws:
+    preflight_laws(RUNS): foretells >= 60 foretells_of_modules >= 10;
+    format_laws(MANY_RUNS): formats >= 100 cut_off >= 100;
+    invert_laws(MANY_RUNS): inverts_twice >= 45 inverse_goes_back >= 45 inverts_anything_twice >= 20;
+    laws(RUNS): compiles >= 100 agrees_forward >= 95 agrees_backward >= 75;
+    files(RUNS): files_are_one_program >= 60;
+    word_laws(RUNS):
         words_restore_the_program >= 50
         skipped_blocks_command_nothing >= 30
         replacements_command_what_they_say >= 30
@@ -93,17 +85,17 @@ laws! {
 
 #[test]
 fn reach_of_modules() {
-    holds_of(REACH_RUNS, "reach_of_modules", reach_laws::reach_of_modules, 8);
+    holds_of(MANY_RUNS, "reach_of_modules", reach_laws::reach_of_modules, 8);
 }
 
 #[test]
 fn reach_of_programs() {
-    holds_of(REACH_RUNS, "reach_of_programs", reach_laws::reach_of_programs, 90);
+    holds_of(MANY_RUNS, "reach_of_programs", reach_laws::reach_of_programs, 90);
 }
 
 #[test]
 fn reach_of_forks() {
-    holds_of(REACH_RUNS, "reach_of_forks", reach_laws::reach_of_forks, 25);
+    holds_of(MANY_RUNS, "reach_of_forks", reach_laws::reach_of_forks, 25);
 }
 
 /// What is said of points is met, by and by: the verdict is no larger than it needs to be, but for
@@ -124,12 +116,12 @@ fn reach_is_met() {
 
 #[test]
 fn a_program_cut_off_anywhere_gives_messages() {
-    holds_of(FRONT_RUNS, "cut_off_anywhere", front_laws::cut_off_anywhere, 90);
+    holds_of(MANY_RUNS, "cut_off_anywhere", front_laws::cut_off_anywhere, 90);
 }
 
 #[test]
 fn line_ends_mean_nothing() {
-    holds("line_ends_mean_nothing", front_laws::line_ends_mean_nothing, 100);
+    holds_of(MANY_RUNS, "line_ends_mean_nothing", front_laws::line_ends_mean_nothing, 100);
 }
 
 #[test]

@@ -147,7 +147,10 @@ impl<'p> Inverter<'p> {
         let like = |text: &str| self.io.known.get(text).map_or(&[][..], Vec::as_slice);
         if let ([_], [other]) = (like(&own), like(&wanted)) {
             let name = Spanned::new(other.name.value, span);
-            self.io.kept.insert(io.name.value);
+            // One that has the name of an inverse would be made again.
+            if self.plan.inverse_name(other.name).value != io.name.value {
+                self.io.kept.insert(io.name.value);
+            }
             return Some(name);
         }
         let name = self.plan.inverse_name(io.name);
