@@ -70,7 +70,10 @@ laws! {
         round_trips >= 100;
     preflight_laws(RUNS): foretells >= 60 foretells_of_modules >= 10;
     format_laws(MANY_RUNS): formats >= 100 cut_off >= 100;
-    invert_laws(MANY_RUNS): inverts_twice >= 45 inverse_goes_back >= 45 inverts_anything_twice >= 20;
+    invert_laws(MANY_RUNS):
+        inverts_twice >= 45
+        inverse_goes_back >= 45
+        inverts_anything_twice >= 20;
     laws(RUNS): compiles >= 100 agrees_forward >= 95 agrees_backward >= 75;
     files(RUNS): files_are_one_program >= 60;
     word_laws(RUNS):
