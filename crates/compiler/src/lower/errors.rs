@@ -10,7 +10,7 @@ use super::statement::PREFIX;
 use super::test::Test;
 use crate::response::Response;
 use crate::tree::StatementKind;
-use obverse_bytecode::{Continuation, Mark};
+use obverse_bytecode::{Continuation, Mark, Recovery, Severity};
 use obverse_isa::{ErrorId, FunctionId, GlobalId, Instr, LocalId, Type};
 
 /// How often something is done again before it is given up.
@@ -74,6 +74,9 @@ impl Lower<'_> {
             self.push(Instr::PushRaised { error });
             self.code.jump(|target| Instr::JumpUnless { prefix: PREFIX, target })
         });
+        if self.is_reversed(error) {
+            self.push(Instr::ErrorDue { error });
+        }
         match (response, self.continuation(error)) {
             (Response::Recover { using, .. }, Some(then)) => {
                 self.recover(error, using, then, site);
@@ -81,6 +84,13 @@ impl Lower<'_> {
             _ => self.give_up(Way::Out),
         }
         next.into_iter().for_each(|next| self.join_one(next));
+    }
+
+    /// Whether whoever drives the machine may go back for an error before the code responds.
+    fn is_reversed(&self, error: ErrorId) -> bool {
+        let declared = &self.program.module.errors[error.index()];
+        declared.severity == Severity::Recoverable
+            && matches!(declared.recovery, Recovery::Reversing(_))
     }
 
     fn recover(
