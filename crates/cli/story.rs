@@ -148,6 +148,7 @@ fn kind_word(kind: FunctionKind) -> &'static str {
         FunctionKind::Io => "io",
         FunctionKind::AdvancedMove => "advance",
         FunctionKind::Replacement => "block",
+        FunctionKind::Cleanup => "cleanup",
     }
 }
 

@@ -1,11 +1,12 @@
 //! Modules: what a compiler writes and a machine runs.
 //!
-//! [`module`] is the data, [`codec`] its bytes, [`builder`] how code is put together, [`text`] the
+//! [`module`] is the data ([`fault`] what it says of faults), [`codec`] its bytes, [`builder`] how code is put together, [`text`] the
 //! assembler and disassembler, [`mod@verify`] what a machine may rely on. Knows nothing of source
 //! languages, tapes or robots.
 
 pub mod builder;
 pub mod codec;
+pub mod fault;
 pub mod module;
 pub mod text;
 pub mod verify;
@@ -13,10 +14,11 @@ mod wire;
 
 pub use builder::{CodeBuilder, Mark};
 pub use codec::{DecodeError, DecodeErrorKind, decode, encode, fingerprint};
+pub use fault::{Bounds, FaultName};
 pub use module::{
     ActionKind, Constant, Continuation, Depth, ErrorDeclaration, Extent, Function, FunctionKind,
-    Item, Keyframe, Mention, Mentioned, Module, Otherwise, Recovery, Respond, Reversal, Severity,
-    SourceEntry, SourceFile, Variable,
+    Item, Keyframe, Mention, Mentioned, Module, Otherwise, Pattern, Perturbation, Recovery,
+    Respond, Reversal, Severity, SourceEntry, SourceFile, Variable,
 };
 pub use text::{AsmError, assemble, disassemble};
 pub use verify::{Verified, VerifyError, verify};

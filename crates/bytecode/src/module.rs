@@ -3,6 +3,7 @@
 //! Indices are into the tables of the same module; [`verify`](mod@crate::verify) says what must
 //! hold of them. Lengths are metres, angles radians, times seconds.
 
+use crate::fault::{Bounds, FaultName};
 use obverse_isa::{Instr, Type};
 use serde::{Deserialize, Serialize};
 
@@ -33,6 +34,8 @@ pub struct Module {
     pub globals: Vec<Variable>,
     /// Functions in the order of their code; the first is where the program starts.
     pub functions: Vec<Function>,
+    /// The function that runs at the end of the program, whatever came before.
+    pub cleanup: Option<u16>,
     /// Everything that runs.
     #[serde(with = "crate::wire::code")]
     pub code: Vec<Instr>,
@@ -156,6 +159,8 @@ pub enum FunctionKind {
     AdvancedMove,
     /// A block that takes another one's place in reverse.
     Replacement,
+    /// What runs at the end of the program, whatever came before.
+    Cleanup,
 }
 
 /// Where a row of instructions comes from: from `first` up to the next entry's.
@@ -235,6 +240,10 @@ pub struct ErrorDeclaration {
     pub name: String,
     /// How bad it is.
     pub severity: Severity,
+    /// The faults of the workcell that raise it, ascending; none of them raises another error.
+    pub faults: Vec<FaultName>,
+    /// What recovering from one incident may cost.
+    pub bounds: Bounds,
     /// How it is recovered from.
     pub recovery: Recovery,
     /// What follows when recovering has been given up.
@@ -274,8 +283,8 @@ pub struct Reversal {
     pub depth: Depth,
     /// How far it may go.
     pub extent: Extent,
-    /// The largest sideways offset of the failed motion on the way forward again, in metres.
-    pub perturbation_m: Option<f64>,
+    /// How the failed motion is offset sideways on the way forward again, if it is.
+    pub perturbation: Option<Perturbation>,
     /// Whether it goes forward again slower.
     pub slower: bool,
     /// Whether it goes forward again with less force.
@@ -288,9 +297,30 @@ pub enum Depth {
     /// It does not.
     Fixed,
     /// Further each time the same error comes from the same place.
-    Escalating,
+    Escalating {
+        /// Whether twice as far each time, instead of one action further.
+        doubling: bool,
+    },
     /// As far as experience says.
     Learned,
+}
+
+/// How a motion is offset sideways when it is tried again.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Perturbation {
+    /// The largest offset, in metres.
+    pub limit_m: f64,
+    /// How the offsets of one attempt and the next lie.
+    pub pattern: Pattern,
+}
+
+/// How the offsets of one attempt and the next lie.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub enum Pattern {
+    /// On a spiral from the middle outwards.
+    Spiral,
+    /// At random within the limit.
+    Random,
 }
 
 /// The bound of a reversal.

@@ -6,8 +6,8 @@
 
 use arbitrary::{Result, Unstructured};
 use obverse_bytecode::{
-    CodeBuilder, Constant, Continuation, ErrorDeclaration, Function, FunctionKind, Item, Keyframe,
-    Mark, Module, Otherwise, Recovery, Respond, Severity, Variable,
+    Bounds, CodeBuilder, Constant, Continuation, ErrorDeclaration, Function, FunctionKind, Item,
+    Keyframe, Mark, Module, Otherwise, Recovery, Respond, Severity, Variable,
 };
 use obverse_isa::{
     Axis, Bit, CheckpointId, ConstantId, CounterId, ErrorId, Frame, FunctionId, GlobalId, ItemId,
@@ -107,6 +107,8 @@ fn tables() -> Module {
     let error = |name: &str| ErrorDeclaration {
         name: name.to_owned(),
         severity: Severity::Recoverable,
+        faults: Vec::new(),
+        bounds: Bounds::default(),
         recovery: Recovery::None,
         otherwise: Otherwise::Stop,
         respond: Respond::AfterAction,

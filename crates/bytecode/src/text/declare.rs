@@ -1,10 +1,11 @@
 //! The first pass: tables, functions, and where labels are. Leaves for the second pass every line
 //! that names something.
 
-use super::error::{AsmError, Errors, shown, unknown};
+use super::error::{AsmError, Errors, none_of, shown, unknown};
 use super::mention;
 use super::quote::{is_bare, unquote};
 use super::scan::{Scanner, Token};
+use crate::fault::Bounds;
 use crate::module::{
     Constant, Continuation, ErrorDeclaration, Function, FunctionKind, Item, Module, Otherwise,
     Recovery, Respond, Severity, SourceEntry, SourceFile, Variable,
@@ -45,6 +46,8 @@ pub(super) enum What {
     Recover { error: usize },
     /// What follows when recovering an error has been given up.
     Otherwise { error: usize },
+    /// The function that runs at the end.
+    Cleanup,
 }
 
 /// What the lines above have opened for the next ones to add to.
@@ -75,8 +78,10 @@ struct Reader<'t> {
 /// Every directive.
 const DIRECTIVES: &[&str] = &[
     ".at",
+    ".bounds",
     ".cell",
     ".checkpoint",
+    ".cleanup",
     ".code",
     ".const",
     ".counters",
@@ -89,6 +94,7 @@ const DIRECTIVES: &[&str] = &[
     ".local",
     ".map",
     ".mention",
+    ".on",
     ".otherwise",
     ".parameter",
     ".parameters",
@@ -102,6 +108,9 @@ const DIRECTIVES: &[&str] = &[
     ".then",
     ".tool",
 ];
+
+/// Those that say what an error does.
+const OF_ERRORS: [&str; 6] = [".bounds", ".on", ".otherwise", ".recover", ".respond", ".then"];
 
 /// The first pass over a text.
 pub(super) fn declare(text: &str) -> Declared<'_> {
@@ -224,7 +233,7 @@ impl<'t> Reader<'t> {
     }
 
     fn directive(&mut self, word: &str, line: &mut Scanner<'t>) -> Result<(), Problem> {
-        let adds = matches!(word, ".at" | ".recover" | ".otherwise" | ".respond" | ".then");
+        let adds = word == ".at" || OF_ERRORS.contains(&word);
         let opened = if adds { self.opened } else { Opened::Nothing };
         self.opened = opened;
         match word {
@@ -236,10 +245,11 @@ impl<'t> Reader<'t> {
                 self.leave(What::At { item }, line)
             }
             ".error" => self.error(line),
-            ".recover" | ".otherwise" | ".respond" | ".then" => {
+            _ if OF_ERRORS.contains(&word) => {
                 let error = self.last(Opened::Error, "what an error does follows its `.error`")?;
                 self.error_clause(word, error, line)
             }
+            ".cleanup" => self.leave(What::Cleanup, line),
             ".function" => self.function(line),
             ".parameter" | ".parameters" | ".local" | ".counters" | ".slot" | ".range" => {
                 self.of_function(word, line)
@@ -324,6 +334,8 @@ impl<'t> Reader<'t> {
         self.declared.module.errors.push(ErrorDeclaration {
             name,
             severity: *severity.as_ref().unwrap_or(&Severity::Fatal),
+            faults: Vec::new(),
+            bounds: Bounds::default(),
             recovery: Recovery::None,
             otherwise: Otherwise::Stop,
             respond: Respond::AtOnce,
@@ -344,6 +356,12 @@ impl<'t> Reader<'t> {
         match word {
             ".recover" => return self.leave(What::Recover { error }, line),
             ".otherwise" => return self.leave(What::Otherwise { error }, line),
+            ".on" => {
+                while line.clone().token()?.is_some() {
+                    declaration.faults.push(line.one_of()?);
+                }
+            }
+            ".bounds" => declaration.bounds = bounds(line)?,
             ".respond" => declaration.respond = line.one_of()?,
             _ => declaration.continuation = line.one_of()?,
         }
@@ -432,6 +450,22 @@ impl<'t> Reader<'t> {
         self.opened = Opened::Source { has_text: true };
         Ok(())
     }
+}
+
+fn bounds(line: &mut Scanner) -> Result<Bounds, AsmError> {
+    let mut bounds = Bounds::default();
+    while let Some(word) = line.optional_word("bound")? {
+        match word.value {
+            "attempts" => bounds.attempts = Some(line.number("number of attempts")?),
+            "time" => bounds.time_s = Some(line.real("time in seconds")?),
+            "distance" => bounds.distance_m = Some(line.real("distance in metres")?),
+            other => {
+                let choices = ["attempts", "time", "distance"];
+                return Err(line.error(word.at, none_of("bound", other, choices)));
+            }
+        }
+    }
+    Ok(bounds)
 }
 
 fn variable(variables: &mut Vec<Variable>, line: &mut Scanner) -> Result<(), AsmError> {

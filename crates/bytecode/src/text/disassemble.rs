@@ -5,8 +5,10 @@ use super::mention;
 use super::names::{Names, Scope};
 use super::quote::{is_plain, quoted};
 use super::words::{self, Word};
+use crate::fault::Bounds;
 use crate::module::{
-    ErrorDeclaration, Extent, Function, Item, Module, Otherwise, Recovery, Reversal, SourceFile,
+    ErrorDeclaration, Extent, Function, Item, Module, Otherwise, Perturbation, Recovery, Reversal,
+    SourceFile,
 };
 use obverse_isa::OperandKind;
 use std::fmt::Write;
@@ -82,6 +84,10 @@ fn tables(module: &Module, scope: &Scope, out: &mut String) {
     for variable in &module.globals {
         let _ = writeln!(out, ".global {} {}", quoted(&variable.name), variable.of_type);
     }
+    if let Some(cleanup) = module.cleanup {
+        let cleanup = name(scope, OperandKind::Function, usize::from(cleanup));
+        let _ = writeln!(out, ".cleanup {cleanup}");
+    }
 }
 
 fn named(directive: &str, names: &[String], out: &mut String) {
@@ -104,8 +110,8 @@ fn item(item: &Item, scope: &Scope, out: &mut String) {
 }
 
 fn error_declaration(error: &ErrorDeclaration, scope: &Scope, out: &mut String) {
-    let ErrorDeclaration { name: called, severity, recovery, otherwise, respond, continuation } =
-        error;
+    let ErrorDeclaration { name: called, severity, .. } = error;
+    let ErrorDeclaration { faults, bounds, recovery, otherwise, respond, continuation, .. } = error;
     let function = |index: u16| name(scope, OperandKind::Function, usize::from(index));
     let recovery = match recovery {
         Recovery::None => "none".to_owned(),
@@ -118,14 +124,29 @@ fn error_declaration(error: &ErrorDeclaration, scope: &Scope, out: &mut String) 
         Otherwise::Stop => "stop".to_owned(),
     };
     let _ = writeln!(out, ".error {} {}", quoted(called), severity.word());
+    if !faults.is_empty() {
+        let faults = faults.iter().map(|fault| fault.word()).collect::<Vec<_>>().join(" ");
+        let _ = writeln!(out, "    .on {faults}");
+    }
+    if *bounds != Bounds::default() {
+        let _ = writeln!(out, "    .bounds{}", bounds_text(bounds));
+    }
     let _ = writeln!(out, "    .recover {recovery}");
     let _ = writeln!(out, "    .otherwise {otherwise}");
     let _ = writeln!(out, "    .respond {}", respond.word());
     let _ = writeln!(out, "    .then {}", continuation.word());
 }
 
+fn bounds_text(bounds: &Bounds) -> String {
+    let Bounds { attempts, time_s, distance_m } = *bounds;
+    let counted = attempts.map(|attempts| format!(" attempts {attempts}"));
+    let timed = time_s.map(|time_s| format!(" time {}", words::real(time_s)));
+    let measured = distance_m.map(|distance_m| format!(" distance {}", words::real(distance_m)));
+    [counted, timed, measured].into_iter().flatten().collect()
+}
+
 fn reversal(policy: &Reversal, scope: &Scope) -> String {
-    let Reversal { depth, extent, perturbation_m, slower, lighter } = *policy;
+    let Reversal { depth, extent, perturbation, slower, lighter } = *policy;
     let mut text = depth.word().to_owned();
     let _ = match extent {
         Extent::Actions(count) => write!(text, " actions {count}"),
@@ -135,8 +156,8 @@ fn reversal(policy: &Reversal, scope: &Scope) -> String {
         }
         Extent::Sequence => write!(text, " sequence"),
     };
-    if let Some(within) = perturbation_m {
-        let _ = write!(text, " perturbed {}", words::real(within));
+    if let Some(Perturbation { limit_m, pattern }) = perturbation {
+        let _ = write!(text, " perturbed {} {}", pattern.word(), words::real(limit_m));
     }
     for (is_said, word) in [(slower, " slower"), (lighter, " lighter")] {
         if is_said {

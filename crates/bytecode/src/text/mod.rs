@@ -16,13 +16,16 @@
 //! .tool "NAME"
 //! .error "NAME" SEVERITY                 warning, recoverable, fatal
 //!     .recover none | using FUNCTION
-//!     .recover reversing DEPTH EXTENT [perturbed METRES] [slower] [lighter]
+//!     .on FAULT ...                      the faults that raise it, by the codes of a workcell
+//!     .bounds [attempts N] [time SECONDS] [distance METRES]
+//!     .recover reversing DEPTH EXTENT [perturbed PATTERN METRES] [slower] [lighter]
 //!     .otherwise using FUNCTION | operator | stop
 //!     .respond at_once | after_action | after_sequence
 //!     .then action | next_action | sequence | program | stop
 //! .checkpoint "NAME"
 //! .reason "TEXT"
 //! .global "NAME" TYPE
+//! .cleanup FUNCTION                      what runs at the end of the program
 //! .function "NAME" KIND                  what follows is of this function, to the next one
 //!     .parameter "NAME" TYPE             the parameters come before the other locals
 //!     .local "NAME" TYPE
@@ -38,7 +41,7 @@
 //!                                        `item N`, `tool N`, `output "NAME" N`, `input "NAME" N`
 //! ```
 //!
-//! DEPTH is `fixed`, `escalating` or `learned`; EXTENT is `actions N`, `checkpoint NAME` or
+//! DEPTH is `fixed`, `escalating`, `doubling` or `learned`; PATTERN is `spiral` or `random`; EXTENT is `actions N`, `checkpoint NAME` or
 //! `sequence`. A table is in the order of its lines, which may stand anywhere. A name is a word or
 //! quoted text; `#7` is the seventh of a table, counted from nought, whatever its name, and `x#7`
 //! the same with its name. `push.const 0.25` and `barrier "why"` add to their tables what is not

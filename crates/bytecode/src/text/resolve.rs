@@ -8,7 +8,9 @@ use super::names::{Found, Names, Scope, is_named};
 use super::scan::{Placed, Scanner, Token};
 use super::words::{choice_number, choices, parse_constant};
 use crate::builder::{with_label, with_prefix};
-use crate::module::{Constant, Depth, Extent, Keyframe, Module, Otherwise, Recovery, Reversal};
+use crate::module::{
+    Constant, Depth, Extent, Keyframe, Module, Otherwise, Perturbation, Recovery, Reversal,
+};
 use obverse_isa::{Family, Instr, Label, OpInfo, Opcode, OperandError, OperandKind, Prefix};
 use std::collections::{BTreeMap, HashMap};
 
@@ -21,11 +23,13 @@ pub(super) struct Resolved {
     keyframes: Vec<(usize, Keyframe)>,
     recoveries: Vec<(usize, Recovery)>,
     otherwise: Vec<(usize, Otherwise)>,
+    cleanup: Option<u16>,
 }
 
 impl Resolved {
     pub(super) fn put_into(self, module: &mut Module) {
         module.code = self.code;
+        module.cleanup = self.cleanup;
         module.constants.extend(self.constants);
         module.reasons.extend(self.reasons);
         for (item, keyframe) in self.keyframes {
@@ -129,6 +133,9 @@ impl<'t> Resolver<'_, 't, '_> {
             What::Otherwise { error } => {
                 let otherwise = self.otherwise(line)?;
                 self.resolved.otherwise.push((error, otherwise));
+            }
+            What::Cleanup => {
+                self.resolved.cleanup = Some(self.index(OperandKind::Function, line)?);
             }
         }
         line.end()
@@ -316,10 +323,14 @@ impl<'t> Resolver<'_, 't, '_> {
             }
         };
         let mut reversal =
-            Reversal { depth, extent, perturbation_m: None, slower: false, lighter: false };
+            Reversal { depth, extent, perturbation: None, slower: false, lighter: false };
         while let Some(word) = line.optional_word("change")? {
             match word.value {
-                "perturbed" => reversal.perturbation_m = Some(line.real("distance in metres")?),
+                "perturbed" => {
+                    let pattern = line.one_of()?;
+                    let limit_m = line.real("distance in metres")?;
+                    reversal.perturbation = Some(Perturbation { limit_m, pattern });
+                }
                 "slower" => reversal.slower = true,
                 "lighter" => reversal.lighter = true,
                 other => {

@@ -1,6 +1,9 @@
 //! The words of assembly text for values that are one of a few, and numbers as text.
 
-use crate::module::{ActionKind, Constant, Continuation, Depth, FunctionKind, Respond, Severity};
+use crate::fault::FaultName;
+use crate::module::{
+    ActionKind, Constant, Continuation, Depth, FunctionKind, Pattern, Respond, Severity,
+};
 use obverse_isa::{Axis, Frame, Level, Operand, OperandKind, Path, Setting, SpeedId, Type};
 
 /// A value that is written as a word.
@@ -40,6 +43,7 @@ words! {
         Io "io"
         AdvancedMove "advanced_move"
         Replacement "replacement"
+        Cleanup "cleanup"
     }
     ActionKind "kind of action" {
         Move "move"
@@ -54,10 +58,9 @@ words! {
         Recoverable "recoverable"
         Fatal "fatal"
     }
-    Depth "depth" {
-        Fixed "fixed"
-        Escalating "escalating"
-        Learned "learned"
+    Pattern "pattern" {
+        Spiral "spiral"
+        Random "random"
     }
     Respond "time to respond" {
         AtOnce "at_once"
@@ -70,6 +73,34 @@ words! {
         Sequence "sequence"
         Program "program"
         Stop "stop"
+    }
+}
+
+impl Word for Depth {
+    const WHAT: &'static str = "depth";
+    const ALL: &'static [Self] = &[
+        Self::Fixed,
+        Self::Escalating { doubling: false },
+        Self::Escalating { doubling: true },
+        Self::Learned,
+    ];
+
+    fn word(self) -> &'static str {
+        match self {
+            Self::Fixed => "fixed",
+            Self::Escalating { doubling: false } => "escalating",
+            Self::Escalating { doubling: true } => "doubling",
+            Self::Learned => "learned",
+        }
+    }
+}
+
+impl Word for FaultName {
+    const WHAT: &'static str = "fault";
+    const ALL: &'static [Self] = &Self::ALL;
+
+    fn word(self) -> &'static str {
+        self.code()
     }
 }
 
@@ -159,6 +190,8 @@ mod tests {
         words_are_inverse::<ActionKind>();
         words_are_inverse::<Severity>();
         words_are_inverse::<Depth>();
+        words_are_inverse::<Pattern>();
+        words_are_inverse::<FaultName>();
         words_are_inverse::<Respond>();
         words_are_inverse::<Continuation>();
         words_are_inverse::<Type>();

@@ -1,6 +1,7 @@
 //! Rules 1, 2 and 9: tables, functions, source map. Knows nothing of what instructions mean.
 
 use super::{Findings, Rule};
+use crate::fault::Bounds;
 use crate::module::{FunctionKind, Mention, Mentioned, Module, Otherwise, Recovery, Variable};
 use crate::{Extent, Function};
 use obverse_isa::{Instr, Type};
@@ -10,6 +11,8 @@ pub(super) fn check(module: &Module, findings: &mut Findings) {
     lengths(module, findings);
     numbers(module, findings);
     errors(module, findings);
+    faults(module, findings);
+    cleanup(module, findings);
     functions(module, findings);
     source_map(module, findings);
     mentions(module, findings);
@@ -104,13 +107,49 @@ fn errors(module: &Module, findings: &mut Findings) {
         if let Recovery::Reversing(reversal) = &error.recovery {
             let is_missing = matches!(reversal.extent, Extent::Checkpoint(checkpoint)
                 if usize::from(checkpoint) >= module.checkpoints.len());
-            let perturbation = reversal.perturbation_m;
-            let is_bad = perturbation.is_some_and(|within| !(within >= 0.0 && within.is_finite()));
+            let limit_m = reversal.perturbation.map(|perturbation| perturbation.limit_m);
+            let is_bad = limit_m.is_some_and(|limit| !(limit >= 0.0 && limit.is_finite()));
             if is_missing || is_bad {
                 let why = format!("the reversal of error `{}` makes no sense", error.name);
                 findings.of_module(Rule::Tables, why);
             }
         }
+    }
+}
+
+/// A fault raises one error at the most, and what bounds an incident bounds it.
+fn faults(module: &Module, findings: &mut Findings) {
+    let mut taken = HashSet::new();
+    for error in &module.errors {
+        if !error.faults.is_sorted() || !error.faults.iter().all(|fault| taken.insert(*fault)) {
+            let why = format!("error `{}` has a fault twice, or another error has it", error.name);
+            findings.of_module(Rule::Tables, why);
+        }
+        let Bounds { attempts, time_s, distance_m } = error.bounds;
+        let is_none = |bound: Option<f64>| bound.is_some_and(|b| !(b > 0.0 && b.is_finite()));
+        if attempts == Some(0) || is_none(time_s) || is_none(distance_m) {
+            let why = format!("the bounds of error `{}` make no sense", error.name);
+            findings.of_module(Rule::Tables, why);
+        }
+    }
+}
+
+/// What runs at the end is the one function of its kind, and is given nothing.
+fn cleanup(module: &Module, findings: &mut Findings) {
+    for (index, function) in module.functions.iter().enumerate() {
+        let is_cleanup = function.kind == FunctionKind::Cleanup;
+        let is_named = module.cleanup.is_some_and(|cleanup| usize::from(cleanup) == index);
+        if is_cleanup != is_named || (is_cleanup && function.parameters != 0) {
+            let why = format!(
+                "function `{}`: what runs at the end is one function of that kind, without \
+                 parameters",
+                function.name
+            );
+            findings.of_module(Rule::Functions, why);
+        }
+    }
+    if module.cleanup.is_some_and(|cleanup| usize::from(cleanup) >= module.functions.len()) {
+        findings.of_module(Rule::Functions, "what runs at the end is a function that is not there");
     }
 }
 

@@ -59,7 +59,7 @@ fn modules_round_trip() {
 fn the_header_is_as_documented() {
     let written = small();
     assert_eq!(around(&written[HEADER_BYTES..]), written);
-    assert_eq!(&written[..12], b"OBVERSE\0\x02\0\0\0");
+    assert_eq!(&written[..12], b"OBVERSE\0\x03\0\0\0");
 }
 
 #[test]
@@ -257,7 +257,7 @@ fn a_file_of_another_format_is_refused() {
     assert_eq!(error.to_string(), "byte 0: this is no thing: it does not begin as one does");
     let newer = codec::Format { version: 9, ..other };
     let error = codec::open::<u32>(newer, &sealed).unwrap_err();
-    assert_eq!(error.kind, DecodeErrorKind::Version { found: 2 });
+    assert_eq!(error.kind, DecodeErrorKind::Version { found: MODULE.version });
     let longer = codec::open::<u16>(other, &sealed).unwrap_err();
     assert!(matches!(longer.kind, DecodeErrorKind::Payload { .. }));
 }
@@ -270,7 +270,7 @@ fn errors_say_where() {
     assert_eq!(text(&small()[..10]), expected);
     let mut old = small();
     old[8] = 0;
-    let expected = "byte 8: the module has format version 0, and this is version 2; compile the \
+    let expected = "byte 8: the module has format version 0, and this is version 3; compile the \
                     program again";
     assert_eq!(text(&old), expected);
     let mut other = small();

@@ -3,9 +3,9 @@
 
 use arbitrary::{Result, Unstructured};
 use obverse_bytecode::{
-    ActionKind, Constant, Continuation, Depth, ErrorDeclaration, Extent, Function, FunctionKind,
-    Item, Keyframe, Mention, Mentioned, Module, Otherwise, Recovery, Respond, Reversal, Severity,
-    SourceEntry, SourceFile, Variable,
+    ActionKind, Bounds, Constant, Continuation, Depth, ErrorDeclaration, Extent, FaultName,
+    Function, FunctionKind, Item, Keyframe, Mention, Mentioned, Module, Otherwise, Pattern,
+    Perturbation, Recovery, Respond, Reversal, Severity, SourceEntry, SourceFile, Variable,
 };
 use obverse_isa::{Instr, OPS, Opcode, OperandError, OperandKind, Type};
 
@@ -72,11 +72,12 @@ fn strings(names: &[&str]) -> Vec<String> {
 }
 
 fn errors() -> Vec<ErrorDeclaration> {
-    let reversal = |depth, extent, perturbation_m, changes: bool| {
+    let within = |limit_m, pattern| Some(Perturbation { limit_m, pattern });
+    let reversal = |depth, extent, perturbation, changes: bool| {
         Recovery::Reversing(Reversal {
             depth,
             extent,
-            perturbation_m,
+            perturbation,
             slower: changes,
             lighter: !changes,
         })
@@ -86,13 +87,25 @@ fn errors() -> Vec<ErrorDeclaration> {
         Recovery::Using(1),
         Recovery::Using(99),
         reversal(Depth::Fixed, Extent::Actions(u32::MAX), None, true),
-        reversal(Depth::Escalating, Extent::Checkpoint(0), Some(0.001), false),
-        reversal(Depth::Learned, Extent::Checkpoint(9), Some(-0.0), true),
-        reversal(Depth::Learned, Extent::Sequence, Some(f64::INFINITY), false),
+        reversal(
+            Depth::Escalating { doubling: false },
+            Extent::Checkpoint(0),
+            within(0.001, Pattern::Spiral),
+            false,
+        ),
+        reversal(Depth::Escalating { doubling: true }, Extent::Sequence, None, false),
+        reversal(Depth::Learned, Extent::Checkpoint(9), within(-0.0, Pattern::Random), true),
+        reversal(Depth::Learned, Extent::Sequence, within(f64::INFINITY, Pattern::Spiral), false),
     ];
     let declaration = |(at, recovery): (usize, Recovery)| ErrorDeclaration {
         name: format!("error {at}"),
         severity: [Severity::Warning, Severity::Recoverable, Severity::Fatal][at % 3],
+        faults: FaultName::ALL.into_iter().rev().take(at).collect(),
+        bounds: Bounds {
+            attempts: (at % 2 == 1).then_some(u32::MAX),
+            time_s: (at % 3 == 1).then_some(f64::NAN),
+            distance_m: (at > 3).then_some(0.25),
+        },
         recovery,
         otherwise: [Otherwise::Using(0), Otherwise::Operator, Otherwise::Stop][at % 3],
         respond: [Respond::AtOnce, Respond::AfterAction, Respond::AfterSequence][at % 3],
@@ -167,6 +180,7 @@ pub(crate) fn everything() -> Module {
             function("empty", FunctionKind::Replacement, half, half),
             function("start", FunctionKind::AdvancedMove, half, end),
         ],
+        cleanup: Some(1),
         code,
         source_map: vec![
             entry(0, 0, None),
@@ -208,10 +222,13 @@ fn variable(u: &mut Unstructured) -> Result<Variable> {
 fn arbitrary_error(u: &mut Unstructured) -> Result<ErrorDeclaration> {
     let extents =
         [Extent::Actions(u.arbitrary()?), Extent::Checkpoint(index(u)?), Extent::Sequence];
+    let depths = [Depth::Fixed, Depth::Escalating { doubling: u.arbitrary()? }, Depth::Learned];
+    let pattern = pick(u, &[Pattern::Spiral, Pattern::Random])?;
+    let limit_m: Option<f64> = u.arbitrary()?;
     let reversal = Reversal {
-        depth: pick(u, &[Depth::Fixed, Depth::Escalating, Depth::Learned])?,
+        depth: pick(u, &depths)?,
         extent: pick(u, &extents)?,
-        perturbation_m: u.arbitrary()?,
+        perturbation: limit_m.map(|limit_m| Perturbation { limit_m, pattern }),
         slower: u.arbitrary()?,
         lighter: u.arbitrary()?,
     };
@@ -219,6 +236,12 @@ fn arbitrary_error(u: &mut Unstructured) -> Result<ErrorDeclaration> {
     Ok(ErrorDeclaration {
         name: text(u)?,
         severity: pick(u, &[Severity::Warning, Severity::Recoverable, Severity::Fatal])?,
+        faults: some(u, 3, |u| pick(u, &FaultName::ALL))?,
+        bounds: Bounds {
+            attempts: u.arbitrary()?,
+            time_s: u.arbitrary()?,
+            distance_m: u.arbitrary()?,
+        },
         recovery: match u.int_in_range(0..=2)? {
             0 => Recovery::None,
             1 => Recovery::Using(using),
@@ -259,13 +282,14 @@ fn arbitrary_instr(u: &mut Unstructured, code: i64) -> Result<Instr> {
 
 /// Functions that cover the code in order, or that do not.
 fn functions(u: &mut Unstructured, code: u32) -> Result<Vec<Function>> {
-    const KINDS: [FunctionKind; 6] = [
+    const KINDS: [FunctionKind; 7] = [
         FunctionKind::Start,
         FunctionKind::Sequence,
         FunctionKind::Action,
         FunctionKind::Io,
         FunctionKind::AdvancedMove,
         FunctionKind::Replacement,
+        FunctionKind::Cleanup,
     ];
     let is_regular = u.ratio(3, 4)?;
     let mut next = 0;
@@ -343,6 +367,7 @@ pub(crate) fn arbitrary_module(u: &mut Unstructured) -> Result<Module> {
         reasons: some(u, 3, text)?,
         globals: some(u, 4, variable)?,
         functions: functions(u, end)?,
+        cleanup: if u.arbitrary()? { Some(index(u)?) } else { None },
         code,
         source_map: arbitrary_map(u, end)?,
         mentions: some(u, 4, |u| {

@@ -111,7 +111,7 @@ fn choices() {
     says(
         ".function f block",
         "13: `block` is no kind of function; there are start, sequence, action, io, \
-         advanced_move, replacement",
+         advanced_move, replacement, cleanup",
     );
     says(
         "@ 0 0 0 jump",
@@ -193,7 +193,7 @@ fn errors_and_their_recoveries() {
     clause(".recover using nobody", "16: there is no function `nobody`");
     clause(
         ".recover reversing deep",
-        "20: `deep` is no depth; there are fixed, escalating, learned",
+        "20: `deep` is no depth; there are fixed, escalating, doubling, learned",
     );
     clause(".recover reversing fixed", "25: the extent is missing");
     clause(
@@ -211,7 +211,19 @@ fn errors_and_their_recoveries() {
         "35: `loud` is no change; there are perturbed, \
          slower, lighter",
     );
-    clause(".recover reversing fixed sequence perturbed", "44: the distance in metres is missing");
+    clause(".recover reversing fixed sequence perturbed", "44: the pattern is missing");
+    clause(
+        ".recover reversing fixed sequence perturbed spiral",
+        "51: the distance in metres is missing",
+    );
+    clause(
+        ".on collision storm",
+        "15: `storm` is no fault; there are joint_limit, out_of_reach, singular, \
+         collision, force_limit, protective_stop, emergency_stop, stopped_short, stopped, \
+         bad_command, missing",
+    );
+    clause(".bounds patience 1", "9: `patience` is no bound; there are attempts, time, distance");
+    clause(".bounds time", "13: the time in seconds is missing");
     clause(".recover reversing fixed sequence \"slower\"", "35: `\"slower\"` is no change");
     clause(".otherwise", "11: the last resort is missing");
     clause(".otherwise pray", "12: `pray` is no last resort; there are using, operator, stop");

@@ -92,6 +92,7 @@ impl<'m> Words<'m> {
         let kind = match function.kind {
             FunctionKind::Start => return "the start".to_owned(),
             FunctionKind::Replacement => return "a block run in reverse".to_owned(),
+            FunctionKind::Cleanup => return "the cleanup".to_owned(),
             FunctionKind::Sequence => "sequence",
             FunctionKind::Action => "action",
             FunctionKind::Io => "io",

@@ -6,7 +6,8 @@ use super::names::{Found, Meaning};
 use crate::tree::ExpressionKind;
 use crate::types::ValueType;
 use obverse_bytecode::{
-    Continuation, Depth, Extent, Otherwise, Recovery, Respond, Reversal, Severity,
+    Bounds, Continuation, Depth, Extent, Otherwise, Pattern, Perturbation, Recovery, Respond,
+    Reversal, Severity,
 };
 use obverse_isa::{CheckpointId, FunctionId};
 use obverse_syntax::ast::{self, Change, ErrorClause, Name};
@@ -29,6 +30,8 @@ pub(super) fn undefined(name: &str) -> obverse_bytecode::ErrorDeclaration {
     obverse_bytecode::ErrorDeclaration {
         name: name.to_owned(),
         severity: Severity::Recoverable,
+        faults: Vec::new(),
+        bounds: Bounds::default(),
         recovery: Recovery::None,
         otherwise: Otherwise::Stop,
         respond: Respond::AfterAction,
@@ -79,6 +82,8 @@ impl<'s> Checker<'s> {
             *error = obverse_bytecode::ErrorDeclaration {
                 name,
                 severity,
+                faults: Vec::new(),
+                bounds: Bounds::default(),
                 recovery,
                 otherwise,
                 respond,
@@ -165,12 +170,12 @@ impl<'s> Checker<'s> {
             ast::Recovery::Reversing { depth, extent, changes } => {
                 let depth = match depth {
                     ast::Depth::Fixed => Depth::Fixed,
-                    ast::Depth::Escalating => Depth::Escalating,
+                    ast::Depth::Escalating => Depth::Escalating { doubling: false },
                     ast::Depth::Learned => Depth::Learned,
                 };
                 let extent = self.extent(extent);
                 Recovery::Reversing(self.changes(
-                    Reversal { depth, extent, perturbation_m: None, slower: false, lighter: false },
+                    Reversal { depth, extent, perturbation: None, slower: false, lighter: false },
                     changes,
                 ))
             }
@@ -220,7 +225,8 @@ impl<'s> Checker<'s> {
                             let message = "a perturbation is not negative".to_owned();
                             self.reports.error(Code::OutOfRange, *span, message, "negative");
                         }
-                        reversal.perturbation_m = Some(within_m);
+                        reversal.perturbation =
+                            Some(Perturbation { limit_m: within_m, pattern: Pattern::Spiral });
                     }
                 }
             }

@@ -2,8 +2,8 @@
 
 use crate::common::{function, module};
 use obverse_bytecode::{
-    ActionKind, Continuation, Depth, Extent, FunctionKind, Module, Otherwise, Recovery, Respond,
-    Reversal, Severity,
+    ActionKind, Continuation, Depth, Extent, FunctionKind, Module, Otherwise, Pattern,
+    Perturbation, Recovery, Respond, Reversal, Severity,
 };
 use std::f64::consts::FRAC_PI_2;
 
@@ -77,7 +77,7 @@ fn a_policy_of_reversal_is_kept_for_whoever_drives_the_machine() {
     let plain = Reversal {
         depth: Depth::Learned,
         extent: Extent::Checkpoint(0),
-        perturbation_m: Some(0.001),
+        perturbation: Some(Perturbation { limit_m: 0.001, pattern: Pattern::Spiral }),
         slower: true,
         lighter: false,
     };
@@ -87,9 +87,12 @@ fn a_policy_of_reversal_is_kept_for_whoever_drives_the_machine() {
     assert_eq!(e.continuation, Continuation::Action);
     let Recovery::Reversing(fixed) = f.recovery else { panic!("by reversing") };
     assert_eq!((fixed.depth, fixed.extent), (Depth::Fixed, Extent::Actions(3)));
-    assert_eq!((fixed.perturbation_m, fixed.slower, fixed.lighter), (None, false, true));
+    assert_eq!((fixed.perturbation, fixed.slower, fixed.lighter), (None, false, true));
     let Recovery::Reversing(escalating) = g.recovery else { panic!("by reversing") };
-    assert_eq!((escalating.depth, escalating.extent), (Depth::Escalating, Extent::Sequence));
+    assert_eq!(
+        (escalating.depth, escalating.extent),
+        (Depth::Escalating { doubling: false }, Extent::Sequence)
+    );
 }
 
 #[test]

@@ -25,7 +25,7 @@ const TABLES: &str = r#"
     .at grasp 0 0 0 0 0 0
 .tool gripper
 .error jam recoverable
-    .recover reversing escalating checkpoint begun perturbed 0.001
+    .recover reversing escalating checkpoint begun perturbed spiral 0.001
 .checkpoint begun
 .reason "wet"
 .global g int

@@ -92,15 +92,46 @@ fn rule_1_errors_name_what_is_there() {
     let senseless = "the reversal of error `e` makes no sense";
     for clause in [
         "checkpoint #1",
-        "actions 1 perturbed -0.001",
-        "actions 1 perturbed 0x7ff0000000000000",
-        "actions 1 perturbed 0x7ff8000000000000",
+        "actions 1 perturbed random -0.001",
+        "actions 1 perturbed random 0x7ff0000000000000",
+        "actions 1 perturbed random 0x7ff8000000000000",
     ] {
         let clause = format!(".recover reversing fixed {clause}");
         refused(build(&clause), Rule::Tables, None, senseless);
     }
-    accepted(build(".recover reversing learned sequence perturbed 0"));
+    accepted(build(".recover reversing learned sequence perturbed random 0"));
     accepted(build(".recover reversing fixed checkpoint #0"));
+}
+
+#[test]
+fn rule_1_a_fault_raises_one_error_within_bounds() {
+    let build = |clauses: &str| start(&format!(".error e fatal\n{clauses}"));
+    let twice = "error `e` has a fault twice, or another error has it";
+    for faults in ["collision collision", "missing collision"] {
+        refused(build(&format!(".on {faults}")), Rule::Tables, None, twice);
+    }
+    let of_both = ".on collision missing\n.error f fatal\n.on stopped_short collision";
+    refused(build(of_both), Rule::Tables, None, "error `f` has a fault twice");
+    let senseless = "the bounds of error `e` make no sense";
+    for bounds in ["attempts 0", "time 0", "distance -1", "time 0x7ff8000000000000"] {
+        refused(build(&format!(".bounds {bounds}")), Rule::Tables, None, senseless);
+    }
+    accepted(build(".on collision missing\n.bounds attempts 1 time 0.5 distance 2"));
+}
+
+#[test]
+fn rule_2_what_runs_at_the_end_is_one_function_without_parameters() {
+    let text = |end: &str| {
+        format!("obvasm 1\n.function f start\nenter\nhalt\n.function g {end}\nenter\nreturn")
+    };
+    let why = "function `g`: what runs at the end is one function of that kind, without parameters";
+    let wrong = ["cleanup", "sequence\n.cleanup g", "cleanup\n.cleanup g\n.parameter p int"];
+    for end in wrong {
+        refused(module(&text(end)), Rule::Functions, None, why);
+    }
+    let gone = module(&text("sequence\n.cleanup #9"));
+    refused(gone, Rule::Functions, None, "what runs at the end is a function that is not there");
+    accepted(module(&text("cleanup\n.cleanup g")));
 }
 
 #[test]
