@@ -40,6 +40,45 @@ pub enum Strategy {
 }
 
 impl Strategy {
+    /// The strategy of a name: `declared`, `stop`, `retry`, `back-up`, `restart`, `explicit`,
+    /// `fixed:N`, `escalating`, `learned`, `oracle`. Those that a number belongs to have the number
+    /// that is usual elsewhere: three tries in place, six after backing up 0.30 m (as Nav2).
+    #[must_use]
+    pub fn from_name(name: &str) -> Option<Self> {
+        Some(match name {
+            "declared" => Self::Declared,
+            "stop" => Self::Stop,
+            "retry" => Self::Retry { times: 3 },
+            "back-up" => Self::BackUp { distance_m: 0.30, times: 6 },
+            "restart" => Self::Restart { times: 3 },
+            "explicit" => Self::Explicit,
+            "escalating" => Self::Escalating,
+            "learned" => Self::Learned,
+            "oracle" => Self::Oracle,
+            other => {
+                let actions = other.strip_prefix("fixed:")?.parse().ok()?;
+                (1..=1000).contains(&actions).then_some(Self::Fixed { actions })?
+            }
+        })
+    }
+
+    /// The name that it is asked for by.
+    #[must_use]
+    pub fn name(self) -> String {
+        match self {
+            Self::Declared => "declared".to_owned(),
+            Self::Stop => "stop".to_owned(),
+            Self::Retry { .. } => "retry".to_owned(),
+            Self::BackUp { .. } => "back-up".to_owned(),
+            Self::Restart { .. } => "restart".to_owned(),
+            Self::Explicit => "explicit".to_owned(),
+            Self::Fixed { actions } => format!("fixed:{actions}"),
+            Self::Escalating => "escalating".to_owned(),
+            Self::Learned => "learned".to_owned(),
+            Self::Oracle => "oracle".to_owned(),
+        }
+    }
+
     /// Whether, when it gives up, the code after the error goes on, or a person is called.
     #[must_use]
     pub fn goes_on_when_given_up(self) -> bool {
@@ -61,5 +100,23 @@ pub struct Bounds {
 impl Default for Bounds {
     fn default() -> Self {
         Self { attempts: 8, time_s: 600.0, distance_m: 50.0 }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::Strategy;
+
+    #[test]
+    fn a_strategy_is_found_by_its_name() {
+        for name in
+            ["declared", "stop", "retry", "back-up", "restart", "explicit", "fixed:3", "escalating",
+             "learned", "oracle"]
+        {
+            assert_eq!(Strategy::from_name(name).map(Strategy::name).as_deref(), Some(name));
+        }
+        for wrong in ["", "fixed", "fixed:", "fixed:0", "fixed:-1", "fixed:x", "Learned"] {
+            assert_eq!(Strategy::from_name(wrong), None, "{wrong}");
+        }
     }
 }

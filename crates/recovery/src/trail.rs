@@ -57,7 +57,10 @@ impl Action {
 enum Post {
     Checkpoint(CheckpointId),
     /// A sequence began, with so many calls around its own.
-    Sequence { depth: usize, branches: Vec<usize> },
+    Sequence {
+        depth: usize,
+        branches: Vec<usize>,
+    },
 }
 
 /// Where a run may be taken back to, newest last.
