@@ -15,7 +15,7 @@ use std::path::{Path, PathBuf};
 
 /// What a command that runs a program is told of recoveries.
 #[derive(clap::Args)]
-pub(crate) struct Arguments {
+pub(crate) struct RecoveryArguments {
     /// How errors are recovered from whose recovery is reversal: declared, stop, retry, back-up,
     /// restart, explicit, fixed:N, escalating, learned.
     #[arg(long, default_value = "declared", value_name = "STRATEGY", value_parser = strategy)]
@@ -47,7 +47,10 @@ fn strategy(text: &str) -> Result<Strategy, String> {
 pub(crate) fn memory(path: Option<&Path>) -> Result<Memory, Problem> {
     match path {
         Some(path) if path.exists() => {
-            let text = files::text(path)?;
+            let cannot = |why: String| Problem::of_file(path, why);
+            let bytes = files::read(path).map_err(cannot)?;
+            let text = String::from_utf8(bytes);
+            let text = text.map_err(|_| cannot("this is no text".to_owned()))?;
             Memory::from_text(&text).map_err(|error| Problem::of_file(path, error))
         }
         _ => Ok(Memory::default()),
@@ -85,7 +88,7 @@ impl Operator for Terminal {
             return false;
         }
         write::line(&format!("the arm is held: {fault}"));
-        write::part("release it? Write `release` to let it move again: ");
+        write::out("release it? Write `release` to let it move again: ");
         let _ = io::stdout().flush();
         let mut answer = String::new();
         let is_read = io::stdin().lock().read_line(&mut answer).is_ok();
@@ -121,6 +124,7 @@ fn code(step: &Step<'_>) -> &'static str {
         Step::Fault { .. } => "fault",
         Step::Released => "released",
         Step::Back { .. } => "back",
+        Step::RoundTrip { .. } => "round_trip",
         Step::InPlace { .. } => "in_place",
         Step::Blocked { .. } => "blocked",
         Step::Again { .. } => "again",
@@ -139,17 +143,18 @@ fn details(module: &Module, step: &Step<'_>) -> Vec<(&'static str, Value)> {
         Step::Back { actions, to, .. } => {
             vec![("actions", json!(actions)), ("to", report::place(module, Some(*to)))]
         }
+        Step::RoundTrip { pc, .. } => vec![("at", report::place(module, Some(*pc)))],
         Step::InPlace { backed_up_m, .. } => vec![("backed_up_m", json!(backed_up_m))],
-        Step::Blocked { fault, pc, .. } => vec![
-            ("fault", json!(fault.kind().code())),
-            ("at", report::place(module, Some(*pc))),
-        ],
+        Step::Blocked { fault, pc, .. } => {
+            vec![("fault", json!(fault.kind().code())), ("at", report::place(module, Some(*pc)))]
+        }
         Step::GivenUp { why, .. } => vec![("why", json!(why.code()))],
         Step::Again { change: Some(change), .. } => vec![("change", json!(changed(*change)))],
         Step::Again { .. } | Step::Released | Step::Recovered { .. } => Vec::new(),
     };
     let incident = match step {
         Step::Back { incident, .. }
+        | Step::RoundTrip { incident, .. }
         | Step::InPlace { incident, .. }
         | Step::Blocked { incident, .. }
         | Step::Again { incident, .. }
@@ -180,6 +185,9 @@ fn words(module: &Module, step: &Step<'_>) -> String {
             let to = format!("`{}` ({})", story::said(module, *to), report::line_of(module, *to));
             let far = counted(*actions, "action");
             format!("{}: back {far}, to {to}{}", name(module, incident), reason(*why))
+        }
+        Step::RoundTrip { pc, .. } => {
+            format!("`{}` ended where it began: nothing to undo", story::said(module, *pc))
         }
         Step::InPlace { incident, backed_up_m: None } => {
             format!("{}: again from where the arm is", name(module, incident))

@@ -3,9 +3,9 @@
 use super::{Result, dry};
 use crate::load::{self, Program, Workcell};
 use crate::problem::Problem;
+use crate::recovering::{self, Terminal};
 use crate::report::{self, Report};
 use crate::story::Story;
-use crate::recovering::{self, Terminal};
 use crate::{Outcome, show, write};
 use obverse_recovery::{Bounds, Ending, Incident, Memory, Recovery, drive, recover};
 use obverse_sim::Sim;
@@ -36,7 +36,7 @@ pub(crate) struct Arguments {
     #[arg(long, default_value_t = 1_000_000_000, value_name = "N")]
     pub(crate) limit: u64,
     #[command(flatten)]
-    pub(crate) recovering: recovering::Arguments,
+    pub(crate) recovering: recovering::RecoveryArguments,
     /// Tell the run to machines: JSON Lines, a summary last.
     #[arg(long)]
     pub(crate) json: bool,

@@ -10,8 +10,6 @@ const SPIRAL_POINTS: f64 = 8.0;
 const GOLDEN_ANGLE_RAD: f64 = PI * (3.0 - 2.236_067_977_499_79);
 /// What `lighter` does to a force limit at each attempt.
 const LIGHTER: f64 = 0.8;
-/// The most names of a speed that `slower` goes down.
-const SLOWER_MAX: u8 = 2;
 
 /// The changes of an attempt, counted from 1; none where the policy changes nothing. `motion` is the
 /// instruction of the motion that failed; what is random follows from the seed.
@@ -22,7 +20,7 @@ pub fn of_attempt(
     motion: Option<u32>,
     seed: u64,
 ) -> Option<Alteration> {
-    let slower = if policy.slower { attempt.min(u32::from(SLOWER_MAX)) as u8 } else { 0 };
+    let slower = u8::from(policy.slower);
     let force_factor = policy.lighter.then(|| libm::pow(LIGHTER, f64::from(attempt)));
     let aside = policy.perturbation.zip(motion).map(|(perturbation, pc)| {
         let by_m = match perturbation.pattern {

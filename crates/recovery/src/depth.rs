@@ -8,6 +8,7 @@ use crate::memory::{Costs, DEPTH_MAX, Memory};
 use crate::tell::Why;
 use crate::trail::Trail;
 use obverse_bytecode::{Depth, Extent, Reversal};
+use obverse_geometry::JointConfiguration;
 use obverse_isa::CheckpointId;
 
 /// What the next depth depends on.
@@ -20,6 +21,8 @@ pub(crate) struct Question<'q> {
     pub(crate) tried: &'q [usize],
     /// Seconds of the workcell's clock.
     pub(crate) now_s: f64,
+    /// Where the arm is.
+    pub(crate) joints: JointConfiguration,
     /// What a person takes, in seconds.
     pub(crate) give_up_s: f64,
 }
@@ -104,11 +107,14 @@ impl Question<'_> {
         Ok((actions, Why::Learned { chance, expected_s, known }))
     }
 
-    /// What going back so many actions and coming again is expected to take, in seconds: as long as
-    /// it took the first time, twice.
+    /// What going back so many actions and coming again is expected to take, in seconds: twice as
+    /// long as each took, but for one that ended where it began.
     fn cost_s(&self, depth: usize) -> f64 {
         let actions = self.trail.actions();
-        let began_s = actions[actions.len() - depth].began_s;
-        2.0 * (self.now_s - began_s).max(0.0)
+        let [.., newest] = actions else { return 0.0 };
+        let all_s = (self.now_s - actions[actions.len() - depth].began_s).max(0.0);
+        let newest_s = (self.now_s - newest.began_s).max(0.0);
+        let back_s = if newest.is_round_trip(&self.joints) { all_s - newest_s } else { all_s };
+        all_s + back_s
     }
 }

@@ -56,6 +56,10 @@ pub enum GiveUp {
     },
     /// Going back has been seen not to help.
     WouldNotHelp,
+    /// It was given up here before, and the run has not got past it since.
+    Before,
+    /// Nothing that was tried has got the run any further for so many attempts.
+    Stuck(u32),
     /// The way back was blocked, in both directions.
     Blocked,
     /// The strategy does not recover.
@@ -72,6 +76,8 @@ impl GiveUp {
             Self::Distance(_) => "distance",
             Self::NoWayBack { .. } => "no_way_back",
             Self::WouldNotHelp => "would_not_help",
+            Self::Before => "given_up_before",
+            Self::Stuck(_) => "stuck",
             Self::Blocked => "blocked",
             Self::Strategy => "strategy",
         }
@@ -91,6 +97,10 @@ impl fmt::Display for GiveUp {
             }
             Self::NoWayBack { .. } => write!(f, "nothing before it can be taken back"),
             Self::WouldNotHelp => write!(f, "going back has been seen not to help"),
+            Self::Before => write!(f, "it was given up here before"),
+            Self::Stuck(attempts) => {
+                write!(f, "{attempts} attempts in a row have got the run no further")
+            }
             Self::Blocked => write!(f, "the way back was blocked"),
             Self::Strategy => write!(f, "there is nothing else to try"),
         }

@@ -33,6 +33,10 @@ fn time_s<C: Workcell + Clone>(site: &Site<'_, '_, C>, depth: usize) -> Option<f
     let mut watch = Watch(site.trail.clone());
     let actions = watch.0.actions();
     let mark = Mark::at(actions[actions.len() - depth].steps);
+    let newest = actions.last().filter(|action| action.is_round_trip(&cell.joints()));
+    if let Some(action) = newest {
+        machine.unwind_to(Mark::at(action.steps), &mut cell).ok()?;
+    }
     match machine.reverse_to(mark, &mut cell, &mut ()) {
         Stop::AtMark | Stop::OffMark | Stop::AtStart => {}
         _ => return None,
@@ -54,6 +58,6 @@ struct Watch<'m>(Trail<'m>);
 
 impl Observer for Watch<'_> {
     fn on_event(&mut self, event: &Event, cell: &dyn Workcell) {
-        self.0.note(event, cell.now_s());
+        self.0.note(event, cell);
     }
 }

@@ -17,6 +17,8 @@ use obverse_isa::ErrorId;
 use obverse_vm::{Alteration, Direction, Event, Limits, Machine, Mark, Observer, Stop};
 use obverse_workcell::{Fault, Goal, Motion, Path, Speed, Workcell};
 
+/// How many attempts there may be, at whatever errors, without the run ever getting further.
+const STUCK_ATTEMPTS: u32 = 64;
 /// How often a way back that is blocked is tried again.
 const BLOCKED_TRIES: u32 = 2;
 
@@ -70,9 +72,19 @@ pub fn recover<C: Workcell>(
     recovery: &mut Recovery<'_, C>,
     teller: &mut dyn Teller,
 ) -> Ending {
-    let trail = Trail::new(machine.program().module());
+    let trail = Trail::new(machine.program().module(), cell.joints());
     let begin = machine.executed();
-    let mut run = Run { machine, cell, recovery, teller, trail, open: Vec::new() };
+    let mut run = Run {
+        machine,
+        cell,
+        recovery,
+        teller,
+        trail,
+        open: Vec::new(),
+        given_up: Vec::new(),
+        furthest: 0,
+        attempts: 0,
+    };
     let ending = run.until_ended(begin.saturating_add(limits.instructions));
     run.close_all(&ending);
     ending
@@ -87,6 +99,22 @@ struct Run<'r, 'p, 'o, C> {
     trail: Trail<'p>,
     /// The incidents that are open, innermost last.
     open: Vec<Incident>,
+    /// Errors that were given up where the run goes on without going back.
+    given_up: Vec<GivenUp>,
+    /// The most actions that the run has ever begun.
+    furthest: u64,
+    /// How many attempts there have been since it was last that far.
+    attempts: u32,
+}
+
+/// An error that was given up at a place. What the program does about it then is counted in its own
+/// variables, which going back would restore: so there is no going back for it until it is past.
+struct GivenUp {
+    error: ErrorId,
+    entry: u32,
+    number: u64,
+    /// How many calls were under way where it was due.
+    depth: usize,
 }
 
 /// Tells events on, and notes them on the trail.
@@ -97,7 +125,7 @@ struct Watch<'w, 'm> {
 
 impl Observer for Watch<'_, '_> {
     fn on_event(&mut self, event: &Event, cell: &dyn Workcell) {
-        self.trail.note(event, cell.now_s());
+        self.trail.note(event, cell);
         self.teller.on_event(event, cell);
     }
 }
@@ -212,6 +240,7 @@ impl<'p, C: Workcell> Run<'_, 'p, '_, C> {
     }
 
     fn plan(&mut self, index: usize) -> Result<Plan, GiveUp> {
+        self.check_progress(index)?;
         let incident = &self.open[index];
         self.check_bounds(incident)?;
         let policy = reversal(self.declared(incident)).copied();
@@ -246,6 +275,7 @@ impl<'p, C: Workcell> Run<'_, 'p, '_, C> {
             place: &incident.place,
             tried: &incident.depths(),
             now_s: self.cell.now_s(),
+            joints: self.cell.joints(),
             give_up_s: self.recovery.person_s,
         };
         let (actions, why) = question.answer(asked, self.recovery.memory)?;
@@ -264,6 +294,23 @@ impl<'p, C: Workcell> Run<'_, 'p, '_, C> {
         let foresight = self.recovery.foresight.as_mut().ok_or(GiveUp::Strategy)?;
         let actions = foresight.depth(&site).ok_or(GiveUp::WouldNotHelp)?;
         Ok(Plan::Back { actions, why: Why::Foreseen })
+    }
+
+    fn check_progress(&mut self, index: usize) -> Result<(), GiveUp> {
+        let trail = &self.trail;
+        self.given_up.retain(|old| !trail.is_past(old.number, old.entry, old.depth));
+        let Incident { error, entry, .. } = self.open[index];
+        if self.given_up.iter().any(|old| (old.error, old.entry) == (error, entry)) {
+            return Err(GiveUp::Before);
+        }
+        if trail.count() > self.furthest {
+            self.furthest = trail.count();
+            self.attempts = 0;
+        }
+        if self.attempts >= STUCK_ATTEMPTS {
+            return Err(GiveUp::Stuck(self.attempts));
+        }
+        Ok(())
     }
 
     fn check_bounds(&self, incident: &Incident) -> Result<(), GiveUp> {
@@ -310,6 +357,7 @@ impl<'p, C: Workcell> Run<'_, 'p, '_, C> {
             Plan::Restart => self.restart(index)?,
         }
         self.machine.alter(change);
+        self.attempts += 1;
         self.open[index].attempts.push(Attempt { actions, began_s });
         let step = Step::Again { incident: &self.open[index], change };
         self.teller.on_step(&step, self.cell);
@@ -325,6 +373,7 @@ impl<'p, C: Workcell> Run<'_, 'p, '_, C> {
         let (mark, pc) = (to.steps, to.pc);
         let incident = &self.open[index];
         self.teller.on_step(&Step::Back { incident, actions, to: pc, why }, self.cell);
+        self.pass_round_trip(index)?;
         let mut tries = 0;
         loop {
             let mut watch = Watch { trail: &mut self.trail, teller: &mut *self.teller };
@@ -347,6 +396,19 @@ impl<'p, C: Workcell> Run<'_, 'p, '_, C> {
                 _ => return Err(GiveUp::NoWayBack { never: self.trail.never() }),
             }
         }
+    }
+
+    /// An action that ended where it began is taken back in the program alone: going there again and
+    /// back would press anew on what had stopped it, for nothing.
+    fn pass_round_trip(&mut self, index: usize) -> Result<(), GiveUp> {
+        let newest = self.trail.actions().last();
+        let Some(action) = newest.filter(|it| it.is_round_trip(&self.cell.joints())) else {
+            return Ok(());
+        };
+        let (steps, pc) = (action.steps, action.pc);
+        let step = Step::RoundTrip { incident: &self.open[index], pc };
+        self.teller.on_step(&step, self.cell);
+        self.unwind(steps)
     }
 
     /// The way back is blocked: what was half undone is done again, and the run goes forward from
@@ -409,7 +471,9 @@ impl<'p, C: Workcell> Run<'_, 'p, '_, C> {
     fn give_up(&mut self, index: usize, why: GiveUp) -> Option<Ending> {
         self.machine.alter(None);
         let incident = self.open.remove(index);
-        let (error, pc) = (incident.error, incident.pc);
+        let Incident { error, pc, entry, number, .. } = incident;
+        let depth = self.machine.state().frames().len();
+        self.given_up.push(GivenUp { error, entry, number, depth });
         self.teller.on_step(&Step::GivenUp { incident: &incident, why }, self.cell);
         self.close(incident, Outcome::GivenUp(why));
         // What was raised is still due: the code behind it is what follows.

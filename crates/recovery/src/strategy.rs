@@ -109,10 +109,18 @@ mod tests {
 
     #[test]
     fn a_strategy_is_found_by_its_name() {
-        for name in
-            ["declared", "stop", "retry", "back-up", "restart", "explicit", "fixed:3", "escalating",
-             "learned", "oracle"]
-        {
+        for name in [
+            "declared",
+            "stop",
+            "retry",
+            "back-up",
+            "restart",
+            "explicit",
+            "fixed:3",
+            "escalating",
+            "learned",
+            "oracle",
+        ] {
             assert_eq!(Strategy::from_name(name).map(Strategy::name).as_deref(), Some(name));
         }
         for wrong in ["", "fixed", "fixed:", "fixed:0", "fixed:-1", "fixed:x", "Learned"] {

@@ -55,6 +55,13 @@ pub enum Step<'a> {
         /// Why so far.
         why: Why,
     },
+    /// An action ended where it began: the arm has nothing to take back of it.
+    RoundTrip {
+        /// The error and what was tried before.
+        incident: &'a Incident,
+        /// The action, by its first instruction.
+        pc: u32,
+    },
     /// The arm stays, and the program alone goes back.
     InPlace {
         /// The error and what was tried before.

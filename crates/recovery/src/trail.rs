@@ -5,8 +5,10 @@
 //! the machine tells, and begins anew at what cannot be taken back. Knows nothing of errors.
 
 use obverse_bytecode::{ActionKind, FunctionKind, Module};
+use obverse_geometry::JointConfiguration;
 use obverse_isa::{CheckpointId, Class, FunctionId, Instr};
 use obverse_vm::{Direction, Event};
+use obverse_workcell::Workcell;
 
 /// An action that was begun.
 #[derive(Clone, Debug, PartialEq)]
@@ -17,6 +19,11 @@ pub struct Action {
     pub pc: u32,
     /// When it began, in seconds of the workcell's clock.
     pub began_s: f64,
+    /// Where the arm was when it began.
+    pub joints: JointConfiguration,
+    /// Whether nothing but motions of the arm has been commanded in it, outside of blocks with a
+    /// reverse of their own.
+    pub only_moves: bool,
     /// How many actions of the run lie before it.
     pub number: u64,
     /// Its entry in the source map, by its first instruction.
@@ -24,7 +31,7 @@ pub struct Action {
     /// The last of its instructions that was told of.
     last_pc: u32,
     /// How many calls were under way around it.
-    depth: usize,
+    pub depth: usize,
     /// The branches that it belongs to.
     branches: Vec<usize>,
     /// How many instructions lay before its end, once it has come to it.
@@ -42,7 +49,17 @@ impl Action {
         self.motion.map(|(pc, _)| pc)
     }
 
-    fn note_motion(&mut self, event: &Event) {
+    /// Whether it has led the arm back to where it began, so that in the world there is nothing to
+    /// take back.
+    #[must_use]
+    pub fn is_round_trip(&self, now: &JointConfiguration) -> bool {
+        self.only_moves && self.motion.is_some() && self.joints.same_bits(now)
+    }
+
+    fn note_act(&mut self, event: &Event) {
+        let is_motion = event.report.is_some();
+        let acts = event.instr.info().family.commands_workcell();
+        self.only_moves &= event.open_blocks == 0 && (is_motion || !acts);
         let is_guarded =
             matches!(event.instr, Instr::MoveGuarded { .. } | Instr::MoveGuardedOpposite { .. });
         let was_guarded = self.motion.is_some_and(|(_, is_guarded)| is_guarded);
@@ -74,15 +91,18 @@ pub struct Trail<'m> {
     never: Option<u32>,
     /// When the last event was, in seconds.
     now_s: f64,
+    /// Where the arm was then.
+    joints: JointConfiguration,
     /// How far the arm has gone, in either direction, in metres.
     way_m: f64,
 }
 
 impl<'m> Trail<'m> {
-    /// The trail of a run at its start.
+    /// The trail of a run at its start, with the arm there.
     #[must_use]
-    pub fn new(module: &'m Module) -> Self {
+    pub fn new(module: &'m Module, joints: JointConfiguration) -> Self {
         Self {
+            joints,
             module,
             actions: Vec::new(),
             posts: Vec::new(),
@@ -103,6 +123,16 @@ impl<'m> Trail<'m> {
     #[must_use]
     pub fn count(&self) -> u64 {
         self.dropped + self.actions.len() as u64
+    }
+
+    /// Whether the run has begun an action since the one of a number, other than that entry's, in
+    /// no more than so many calls; or has passed what cannot be taken back.
+    #[must_use]
+    pub fn is_past(&self, number: u64, entry: u32, depth: usize) -> bool {
+        let is_on = |action: &Action| {
+            action.number > number && action.entry != entry && action.depth <= depth
+        };
+        self.dropped > number || self.actions.iter().rev().any(is_on)
     }
 
     /// What stands in the way of going back further than the trail, if anything does.
@@ -143,13 +173,14 @@ impl<'m> Trail<'m> {
         Some(self.actions.len() - self.actions.partition_point(|action| action.steps < *steps))
     }
 
-    /// Something happened, at this time in seconds.
-    pub fn note(&mut self, event: &Event, now_s: f64) {
+    /// Something happened; the workcell is as it was left.
+    pub fn note(&mut self, event: &Event, cell: &dyn Workcell) {
         self.way_m += event.report.map_or(0.0, |report| report.distance_m);
         if event.direction == Direction::Forward {
             self.forward(event);
         }
-        self.now_s = now_s;
+        self.now_s = cell.now_s();
+        self.joints = cell.joints();
     }
 
     fn forward(&mut self, event: &Event) {
@@ -185,7 +216,8 @@ impl<'m> Trail<'m> {
         let is_call = matches!(event.instr, Instr::Call { .. });
         let depth = event.frames - usize::from(is_call);
         let Some(entry) = self.module.source_at(event.pc) else { return };
-        let is_action = is_call || entry.action.is_some_and(|kind| kind != ActionKind::Call);
+        let acts = is_call || event.instr.info().family.commands_workcell();
+        let is_action = entry.action.is_some_and(|kind| is_call || kind != ActionKind::Call);
         let newest = self.actions.iter_mut().rev().find(|it| it.branches == event.branches);
         if let Some(newest) = newest {
             let is_within = newest.is_call && newest.ended.is_none() && depth > newest.depth;
@@ -194,14 +226,16 @@ impl<'m> Trail<'m> {
                 && newest.last_pc < event.pc;
             if is_within || goes_on {
                 newest.last_pc = event.pc;
-                return newest.note_motion(event);
+                return newest.note_act(event);
             }
         }
-        if is_action {
+        if acts && is_action {
             let mut action = Action {
                 steps: began,
                 pc: event.pc,
                 began_s: self.now_s,
+                joints: self.joints,
+                only_moves: true,
                 number: self.count(),
                 entry: entry.first,
                 last_pc: event.pc,
@@ -211,7 +245,7 @@ impl<'m> Trail<'m> {
                 is_call,
                 motion: None,
             };
-            action.note_motion(event);
+            action.note_act(event);
             self.actions.push(action);
         }
     }
