@@ -107,7 +107,7 @@ impl Uses {
             }
             for error in effects.due(&statement.kind, &program.module.errors) {
                 if let Response::Recover { using: Some(callee), .. } = effects.response(error) {
-                    self.call(callee, "recovers by", statement.span);
+                    self.call(callee, "recovers using", statement.span);
                 }
             }
         });
@@ -160,13 +160,13 @@ impl Uses {
             }
             StatementKind::Advance(callee, counterpart) => {
                 self.call(*callee, "advances", span);
-                counterpart.iter().for_each(|callee| self.call(*callee, "runs in reverse", span));
+                counterpart.iter().for_each(|callee| self.call(*callee, "takes this back by", span));
             }
             StatementKind::Io(callee, counterpart) => {
                 self.call(*callee, "does", span);
-                counterpart.iter().for_each(|callee| self.call(*callee, "runs in reverse", span));
+                counterpart.iter().for_each(|callee| self.call(*callee, "takes this back by", span));
             }
-            StatementKind::Reversed(_, Some(callee)) => self.call(*callee, "runs in reverse", span),
+            StatementKind::Reversed(_, Some(callee)) => self.call(*callee, "takes this back by", span),
             StatementKind::Call(callee, arguments) => {
                 self.call(*callee, "calls", span);
                 arguments.iter().for_each(|argument| self.expression(argument));

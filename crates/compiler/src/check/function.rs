@@ -4,9 +4,10 @@ use super::Checker;
 use super::frame::FrameScope;
 use super::names::Meaning;
 use crate::report::warning;
-use crate::tree::{Block, Body, Function, Layout, MAX_SLOTS, Statement};
+use crate::response::{Response, response};
+use crate::tree::{Block, Body, Function, Layout, MAX_SLOTS, Statement, StatementKind};
 use crate::types::ValueType;
-use obverse_bytecode::FunctionKind;
+use obverse_bytecode::{Continuation, ErrorDeclaration, FunctionKind, Recovery, Severity};
 use obverse_isa::{FunctionId, LocalId, Type};
 use obverse_syntax::ast::{self, IoOperation, Name, Sequence};
 use obverse_syntax::codes::Code;
@@ -182,9 +183,23 @@ impl<'s> Checker<'s> {
         let mut diagnostic = warning(Code::Unreachable, unreached, message, "never reached")
             .with_help("leave it out");
         if let Some(last) = block.statements.last() {
-            diagnostic = diagnostic.with_label(last.span, "this never goes on");
+            diagnostic = diagnostic.with_label(last.span, self.why_it_ends(&last.kind));
         }
         self.reports.add(diagnostic);
+    }
+
+    /// What happens in place of the next statement.
+    fn why_it_ends(&self, last: &StatementKind) -> &'static str {
+        match last {
+            StatementKind::Return => "the sequence ends here",
+            StatementKind::Break => "the loop is left here",
+            StatementKind::Loop(_) => "no `break` leads out of this loop",
+            StatementKind::Throw(error) => {
+                let declared = self.module.errors.get(error.index());
+                declared.map_or("an error is raised here", after_throw)
+            }
+            _ => "no way through this leads on",
+        }
     }
 
     /// What stands before a block.
@@ -207,6 +222,26 @@ impl<'s> Checker<'s> {
             Meaning::Sequence(id) | Meaning::Action(id) => Some(id),
             _ => None,
         }
+    }
+}
+
+/// What a `throw` leads to, where that is not the next statement.
+fn after_throw(error: &ErrorDeclaration) -> &'static str {
+    match response(error) {
+        _ if error.severity == Severity::Fatal => "the program stops here",
+        _ if matches!(error.recovery, Recovery::Reversing(_)) => {
+            "from here the program goes back, and on again from there"
+        }
+        Response::Recover { then: Continuation::Action, .. } => {
+            "once recovered from, this is thrown again: it is the action that failed"
+        }
+        Response::Recover { then: Continuation::Sequence, .. } => {
+            "once this is recovered from, the sequence begins again"
+        }
+        Response::Recover { then: Continuation::Program, .. } => {
+            "once this is recovered from, the program begins again"
+        }
+        Response::Recover { .. } | Response::Stop | Response::Ignore => "the program stops here",
     }
 }
 
