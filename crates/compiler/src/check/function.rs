@@ -180,25 +180,37 @@ impl<'s> Checker<'s> {
 
     fn warn_unreached(&mut self, unreached: Span, block: &Block) {
         let message = "this and what follows it in the block is never reached";
-        let mut diagnostic = warning(Code::Unreachable, unreached, message, "never reached")
-            .with_help("leave it out");
-        if let Some(last) = block.statements.last() {
-            diagnostic = diagnostic.with_label(last.span, self.why_it_ends(&last.kind));
-        }
-        self.reports.add(diagnostic);
+        let diagnostic = warning(Code::Unreachable, unreached, message, "never reached");
+        self.reports.add(match block.statements.last() {
+            Some(last) => {
+                let (why, help) = self.why_it_ends(&last.kind);
+                diagnostic.with_label(last.span, why).with_help(help)
+            }
+            None => diagnostic.with_help("leave it out"),
+        });
     }
 
-    /// What happens in place of the next statement.
-    fn why_it_ends(&self, last: &StatementKind) -> &'static str {
+    /// What happens in place of the next statement, and what to do about that.
+    fn why_it_ends(&self, last: &StatementKind) -> (&'static str, &'static str) {
+        let leave_out = "leave it out";
         match last {
-            StatementKind::Return => "the sequence ends here",
-            StatementKind::Break => "the loop is left here",
-            StatementKind::Loop(_) => "no `break` leads out of this loop",
+            StatementKind::Return => ("the sequence ends here", leave_out),
+            StatementKind::Break => ("the loop is left here", leave_out),
+            StatementKind::Loop(_) => {
+                let help = "leave it out, or leave the loop by `break`";
+                ("no `break` leads out of this loop", help)
+            }
             StatementKind::Throw(error) => {
                 let declared = self.module.errors.get(error.index());
-                declared.map_or("an error is raised here", after_throw)
+                let why = declared.map_or("an error is raised here", after_throw);
+                match declared.map(response) {
+                    Some(Response::Recover { .. }) => {
+                        (why, "leave it out, or let the error say `then continue`")
+                    }
+                    _ => (why, leave_out),
+                }
             }
-            _ => "no way through this leads on",
+            _ => ("no way through this leads on", leave_out),
         }
     }
 

@@ -108,7 +108,8 @@ impl<'s> Checker<'s> {
             let message = format!("the name `{}` is given twice", name.value);
             let diagnostic =
                 Diagnostic::error(Code::DuplicateName, name.span, message, "given again here")
-                    .with_label(first, format!("it is {kind} already, named here"));
+                    .with_label(first, format!("it is {kind} already, named here"))
+                    .with_help("give one of them another name");
             self.reports.add(diagnostic);
             self.names.mark_used(name.value);
         }

@@ -73,7 +73,9 @@ impl<'p> Inverter<'p> {
         self.facts = facts;
         let after_then = std::mem::replace(&mut self.arm, arm);
         let otherwise = otherwise.map(|block| self.block(block));
-        if !after_then.is_same(&self.arm) {
+        if after_then.is_refused() {
+            self.arm = after_then;
+        } else if !self.arm.is_refused() && !after_then.is_same(&self.arm) {
             self.arm = Arm::lost("two ways that end in different places join after this", span);
         }
         let (condition, ending_when) = match ending_when {
