@@ -3,16 +3,14 @@
 //!
 //! `//~ E0201 E0101` at the end of a line names the diagnostics that begin on it, each as often as
 //! it comes; `//~^ E0201` those of the line above, `//~^^` of the one above that. To add a program,
-//! add a file; what it imports stands in a folder of its name. Of a file `inverse_…` it is also said
-//! what of its `main` has no inverse. What is meant is never written by a switch: goldens are for
-//! how it looks.
+//! add a file; what it imports stands in a folder of its name. A file `inverse_…` says also what of
+//! its `main` has no inverse. What is meant is never written by a switch: goldens are for how it
+//! looks.
 //!
 //! A change that a diagnostic suggests is made: what it was suggested for is then gone.
 
 use libtest_mimic::{Arguments, Failed, Trial};
-use obverse_compiler::{
-    Compiled, MAX_IMPORT_DEPTH, MAX_IMPORTED, NoInverse, invert_files,
-};
+use obverse_compiler::{Compiled, MAX_IMPORT_DEPTH, MAX_IMPORTED, NoInverse, invert_files};
 use obverse_syntax::MAX_SOURCE_BYTES;
 use obverse_syntax::codes::Code;
 use obverse_syntax::diagnostic::Diagnostic;

@@ -180,9 +180,8 @@ impl Fork<'_> {
         let mut diagnostic = match how {
             How::Commands => {
                 let message = format!("two branches of this fork use {what}");
-                Diagnostic::error(Code::SharedDevice, span, message, text).with_help(
-                    "leave it to one branch, or do one after the other without `fork`",
-                )
+                Diagnostic::error(Code::SharedDevice, span, message, text)
+                    .with_help("leave it to one branch, or do one after the other without `fork`")
             }
             How::Writes => {
                 let message = format!("two branches of this fork assign {what}");

@@ -41,8 +41,7 @@ const fn opens(words: &'static [&'static str], help: &'static str) -> Row {
     Row { words, help, then: Then::InBlock }
 }
 
-const JOINT_MOVES: &[&str] =
-    &["movej", "ptp", "sptp", "moveabsj", "moveto", "movejoint", "ptprel"];
+const JOINT_MOVES: &[&str] = &["movej", "ptp", "sptp", "moveabsj", "moveto", "movejoint", "ptprel"];
 const LINEAR_MOVES: &[&str] = &["movel", "lin", "slin", "movelin", "linrel", "movep"];
 const POSES: [&str; 7] = ["robtarget", "jointtarget", "e6pos", "e6axis", "frame", "pos", "pose"];
 const ENDS: &[&str] = &[
@@ -289,6 +288,7 @@ mod tests {
         assert_eq!(instead("movel", "(p[0.1, 0.2])"), None);
         assert_eq!(instead("PTP", " {X 10}"), None);
         assert_eq!(instead("MoveL", " Offs(p10, 0, 0, 50)"), None);
+        assert_eq!(instead("GOTO", " again"), None, "a jump goes to no place of the arm");
     }
 
     #[test]

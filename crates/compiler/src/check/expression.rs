@@ -132,8 +132,9 @@ impl<'s> Checker<'s> {
                 let diagnostic =
                     Diagnostic::error(Code::UnitMismatch, span, message, found.to_string());
                 match is_literal && !unit.is_none() {
-                    true => diagnostic
-                        .with_help(format!("{needed} is written in {}", unit.examples())),
+                    true => {
+                        diagnostic.with_help(format!("{needed} is written in {}", unit.examples()))
+                    }
                     false => diagnostic,
                 }
             }

@@ -54,8 +54,8 @@ impl<'p> Inverter<'p> {
             diagnostic = diagnostic.with_label(set, "set here");
         }
         self.refuse(diagnostic.with_help(
-            "set it before the first move of the sequence, or give it a counterpart: `io NAME { .. } \
-             reverse OTHER`",
+            "set it before the first move of the sequence, or give it a counterpart: `io NAME { \
+             .. } reverse OTHER`",
         ));
     }
 

@@ -105,7 +105,8 @@ impl<'p> Inverter<'p> {
             });
         }
         if let Some(assignment) = first {
-            let message = "a variable that is changed in a block with its own reverse has no inverse";
+            let message =
+                "a variable that is changed in a block with its own reverse has no inverse";
             let why = "going back restores the variable, and the inverse would not";
             let opening = Span::new(block.span.start, block.span.start + 1);
             self.refuse(
