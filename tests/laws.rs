@@ -7,7 +7,7 @@
 use arbitrary::{Result, Unstructured};
 use obverse_testkit::{
     files, format_laws, front_laws, invert_laws, laws, machine_laws, preflight_laws, reach_laws,
-    word_laws,
+    recovery_laws, word_laws,
 };
 use std::collections::BTreeSet;
 
@@ -68,6 +68,7 @@ laws! {
         write_ahead_with_blocks >= 60
         turns >= 12
         round_trips >= 100;
+    recovery_laws(RUNS): goes_back_along_the_trail >= 60 recovers_within_bounds >= 5;
     preflight_laws(RUNS): foretells >= 60 foretells_of_modules >= 10;
     format_laws(MANY_RUNS): formats >= 100 cut_off >= 100;
     invert_laws(MANY_RUNS):

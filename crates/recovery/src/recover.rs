@@ -8,7 +8,7 @@ use crate::incident::{Attempt, Incident, Outcome};
 use crate::memory::Memory;
 use crate::strategy::{Bounds, Strategy};
 use crate::tell::{Operator, Step, Teller, Why};
-use crate::trail::Trail;
+use crate::trail::{Action, Trail};
 use obverse_bytecode::{
     Depth, ErrorDeclaration, FaultName, Module, Recovery as Declared, Reversal,
 };
@@ -186,7 +186,7 @@ impl<'p, C: Workcell> Run<'_, 'p, '_, C> {
         let raised = error.filter(|error| {
             let step = Step::Fault { fault: &fault, pc, error: *error };
             self.teller.on_step(&step, self.cell);
-            self.may_move(&fault) && self.machine.raise(*error)
+            self.may_move(&fault) && self.machine.raise(*error, self.cell)
         });
         if raised.is_some() { None } else { Some(Ending::Fault { fault, pc, direction }) }
     }
@@ -337,7 +337,7 @@ impl<'p, C: Workcell> Run<'_, 'p, '_, C> {
     /// What the attempt that is about to be made does otherwise.
     fn change(&self, incident: &Incident) -> Option<Alteration> {
         let attempt = incident.attempts.len() as u32 + 1;
-        let motion = self.trail.actions().last().and_then(|action| action.motion());
+        let motion = self.trail.actions().last().and_then(Action::motion);
         let policy = reversal(self.declared(incident))?;
         let reverses = !matches!(
             self.recovery.strategy,
@@ -398,8 +398,8 @@ impl<'p, C: Workcell> Run<'_, 'p, '_, C> {
         }
     }
 
-    /// An action that ended where it began is taken back in the program alone: going there again and
-    /// back would press anew on what had stopped it, for nothing.
+    /// An action that ended where it began is taken back in the program alone: going there again
+    /// and back would press anew on what had stopped it, for nothing.
     fn pass_round_trip(&mut self, index: usize) -> Result<(), GiveUp> {
         let newest = self.trail.actions().last();
         let Some(action) = newest.filter(|it| it.is_round_trip(&self.cell.joints())) else {
