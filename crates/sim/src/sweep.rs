@@ -113,6 +113,8 @@ pub(crate) struct Sweep<'a> {
     moving: Vec<Moving>,
     pairs: Vec<Pair>,
     peg: Option<HeldPeg>,
+    /// The largest contact force that was met.
+    pub(crate) most_n: f64,
     /// How often all pairs may be looked at, if not as often as it takes.
     pub(crate) looks_max: Option<u32>,
 }
@@ -134,6 +136,7 @@ impl<'a> Sweep<'a> {
             moving: Vec::new(),
             pairs: Vec::new(),
             peg: HeldPeg::of(cell, items),
+            most_n: 0.0,
             looks_max: None,
         };
         if !(world.fixed.is_empty() && sweep.resting.is_empty()) {
@@ -189,7 +192,7 @@ impl<'a> Sweep<'a> {
         force_n: f64,
         limit_n: Option<f64>,
     ) -> Outcome {
-        let sensor = Sensor { spec: &self.world.cell.force_sensor, seed: self.world.seed };
+        let sensor = Sensor { spec: &self.world.sensor, seed: self.world.seed };
         // Where noise alone may exceed the limit, every sample counts.
         let watched = limit_n.is_some_and(|limit| limit <= sensor.idle_max_n());
         if self.pairs.is_empty() && !watched {
@@ -231,6 +234,21 @@ impl<'a> Sweep<'a> {
         }
     }
 
+    /// The item that stands and is pushed hardest from the side where the motion ended, and the
+    /// force on it in the plane, in newtons along x and y.
+    pub(crate) fn pushed(&self) -> Option<(usize, [f64; 2])> {
+        let mut hardest: Option<(f64, usize, [f64; 2])> = None;
+        for pair in &self.pairs {
+            let Owner::Item(item) = self.standing(pair.standing).owner else { continue };
+            let [x, y] = [-pair.force_n.x, -pair.force_n.y];
+            let force_n = libm::hypot(x, y);
+            if force_n > 0.0 && hardest.is_none_or(|(most_n, ..)| force_n > most_n) {
+                hardest = Some((force_n, item, [x, y]));
+            }
+        }
+        hardest.map(|(_, item, force_n)| (item, force_n))
+    }
+
     /// Look at every pair that is due.
     fn look(&mut self, fraction: f64) -> Seen {
         let mut place = Place::at(self.route, fraction);
@@ -259,6 +277,7 @@ impl<'a> Sweep<'a> {
         }
         self.pairs = pairs;
         seen.force_n = sum_n.norm();
+        self.most_n = self.most_n.max(seen.force_n);
         seen
     }
 
