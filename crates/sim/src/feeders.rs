@@ -7,7 +7,7 @@ use crate::cell::{FeederSpec, OffsetSpec};
 use crate::gripper::Inventory;
 use crate::random::{self, Stream, counter_of};
 use crate::world::{World, drawn_offset};
-use obverse_geometry::Pose;
+use obverse_geometry::{JointConfiguration, Pose};
 
 /// A feeder now.
 #[derive(Clone, Debug)]
@@ -84,10 +84,14 @@ impl Feeder {
         items.present(spec.item, world.item_place(spec.item).compose(&offset), is_askew);
     }
 
-    /// Whether the part is at its place.
-    pub(crate) fn has_part(spec: &FeederSpec, world: &World, items: &Inventory) -> bool {
-        let lying = items.lying().find(|(item, _)| *item == spec.item);
-        lying.is_some_and(|(_, pose)| {
+    /// Whether the part is at its place, held or not.
+    pub(crate) fn has_part(
+        spec: &FeederSpec,
+        world: &World,
+        items: &Inventory,
+        joints: &JointConfiguration,
+    ) -> bool {
+        items.pose(spec.item, joints).is_some_and(|pose| {
             let place: Pose = world.item_place(spec.item);
             (pose.translation_m - place.translation_m).norm() <= spec.near_m
         })

@@ -219,7 +219,7 @@ impl Sim {
         let feeders = &self.world.cell.feeders;
         let is_part_there = |feeder: usize| {
             let spec = feeders.get(feeder);
-            spec.is_some_and(|spec| Feeder::has_part(spec, &self.world, &self.items))
+            spec.is_some_and(|spec| Feeder::has_part(spec, &self.world, &self.items, &self.joints))
         };
         ask(&Sources {
             outputs: &self.outputs,
