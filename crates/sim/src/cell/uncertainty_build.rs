@@ -4,7 +4,7 @@
 use super::build::{Builder, MM, level, offset};
 use super::file::CellFile;
 use super::number::Probability;
-use super::uncertainty_file::{FallingFile, FeederFile, InputStickFile, SlipFile};
+use super::uncertainty_file::{FallingFile, FeederFile, SlipFile};
 use super::{
     CellError, ChanceSpec, FallSpec, FeederSpec, InputFlaw, InputRule, ItemSpec, OffsetSpec,
     SlipSpec,
@@ -138,20 +138,37 @@ impl Builder<'_> {
         };
         for stick in &file.outputs.stick {
             let index = usize::from(self.output(&stick.output, outputs)?);
+            self.once(&stick.output, file.outputs.stick.iter().map(|stick| &stick.output))?;
             if chance.output_sticks.len() <= index {
                 chance.output_sticks.resize(index + 1, 0.0);
             }
             chance.output_sticks[index] = stick.probability.0;
         }
-        for InputStickFile { input, probability } in &file.inputs.stick {
-            self.flaw(&mut chance, input, *file.inputs.count.get_ref())?.stick = probability.0;
+        let count = *file.inputs.count.get_ref();
+        for stick in &file.inputs.stick {
+            self.once(&stick.input, file.inputs.stick.iter().map(|stick| &stick.input))?;
+            self.flaw(&mut chance, &stick.input, count)?.stick = stick.probability.0;
         }
         for bounce in &file.inputs.bounce {
-            let flaw = self.flaw(&mut chance, &bounce.input, *file.inputs.count.get_ref())?;
+            self.once(&bounce.input, file.inputs.bounce.iter().map(|bounce| &bounce.input))?;
+            let flaw = self.flaw(&mut chance, &bounce.input, count)?;
             flaw.bounce = bounce.probability.map_or(1.0, |p| p.0);
             flaw.bounce_s = bounce.for_s.0;
         }
         Ok(chance)
+    }
+
+    /// Refuse a line that stands in a list before this.
+    fn once<'l>(
+        &self,
+        line: &Spanned<u16>,
+        mut list: impl Iterator<Item = &'l Spanned<u16>>,
+    ) -> Result<(), CellError> {
+        let first = list.find(|other| other.get_ref() == line.get_ref());
+        if first.is_some_and(|first| first.span() != line.span()) {
+            return Err(self.error(line, format!("line {} is here twice", line.get_ref())));
+        }
+        Ok(())
     }
 
     fn flaw<'c>(
