@@ -261,23 +261,33 @@ impl Inventory {
             }
         }
         if let Some((_, index)) = best {
-            self.grasp(index, hand, joints);
+            self.grasp(index, &specs[index], hand, joints);
         }
     }
 
-    /// Take an item anew, which moves it in the gripper.
-    fn grasp(&mut self, index: usize, hand: &Hand<'_>, joints: &JointConfiguration) {
+    /// Take an item anew, which moves it in the gripper: to the middle, and then off by chance.
+    fn grasp(
+        &mut self,
+        index: usize,
+        spec: &ItemSpec,
+        hand: &Hand<'_>,
+        joints: &JointConfiguration,
+    ) {
         let grip = self.items[index].take(joints);
         self.held = Some(index);
         let number = self.grasps;
         self.grasps += 1;
-        let spec = &hand.gripper.grasp_offset;
-        if *spec != OffsetSpec::default() {
-            let streams = (Stream::GraspUniform, Stream::GraspNormal);
-            let by_grasp = drawn_offset(spec, hand.seed, streams, number);
-            grip.in_mount = hand.in_mount(&by_grasp).compose(&grip.in_mount);
-            grip.moved = Some(Moved { by_grasp, by_slip: Pose::identity() });
+        let GripperSpec { centres, grasp_offset: offset, .. } = hand.gripper;
+        if *centres == [false; 2] && *offset == OffsetSpec::default() {
+            return;
         }
+        let off = hand.tcp.inverse().compose(&grip.in_mount).compose(&spec.grasp).translation_m;
+        let [x, y] = std::array::from_fn(|axis| if centres[axis] { -off[axis] } else { 0.0 });
+        let to_middle = Pose::from_rotation_vector([x, y, 0.0], [0.0; 3]);
+        let streams = (Stream::GraspUniform, Stream::GraspNormal);
+        let by_grasp = drawn_offset(offset, hand.seed, streams, number);
+        grip.in_mount = hand.in_mount(&by_grasp.compose(&to_middle)).compose(&grip.in_mount);
+        grip.moved = Some(Moved { by_grasp, by_slip: Pose::identity() });
     }
 
     /// The held item moves in the gripper, in the frame of the tool centre point.

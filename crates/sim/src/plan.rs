@@ -51,6 +51,7 @@ impl Cell {
             (feeder.empty, feeder.askew) = (0.0, 0.0);
         }
         if let Some(gripper) = &mut cell.gripper {
+            // What centres an item does so without chance.
             (gripper.grasp_offset, gripper.slip) = (OffsetSpec::default(), None);
         }
         cell.chance = ChanceSpec::default();

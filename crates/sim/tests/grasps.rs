@@ -204,3 +204,26 @@ fn a_bad_grasp_is_put_right_by_going_back_to_the_pick() {
     // Within one deviation in a plane: 1 - exp(-1/2).
     assert!((60..98).contains(&good), "{good} of 200");
 }
+
+#[test]
+fn fingers_centre_what_they_take_along_their_axes_and_no_other() {
+    let pin = "offset = { fixed_mm = [3, 2, 1] }";
+    for (key, expected_mm) in [
+        ("nothing", [3.0, 2.0, 1.0]),
+        ("x", [0.0, 2.0, 1.0]),
+        ("y", [3.0, 0.0, 1.0]),
+        ("xy", [0.0, 0.0, 1.0]),
+    ] {
+        let cell = pin_on_plate(&format!("centres = \"{key}\""), pin, "", "");
+        let mut sim = Sim::new(&cell, 1);
+        let lay = sim.true_pose(PIN).unwrap();
+        sim.set_output(0, true).unwrap();
+        // The mount is a tenth of a metre behind the tool centre point.
+        let off_mm = (in_hand(&sim).translation_m - nalgebra::Vector3::new(0.0, 0.0, 0.1)) * 1e3;
+        let expected_mm = nalgebra::Vector3::from(expected_mm);
+        assert!((off_mm - expected_mm).norm() < 1e-9, "{key}: {off_mm}");
+        assert!(!is_wrong(&sim, CauseKind::GraspOffset), "centred as it should be");
+        sim.set_output(0, false).unwrap();
+        assert_eq!(sim.true_pose(PIN).unwrap(), lay);
+    }
+}

@@ -7,7 +7,7 @@ use super::file::{
     SpeedFile, SpeedsFile, ToolFile,
 };
 use super::number::{CoordinateMm, JointRad, TurnDeg};
-use super::uncertainty_build::falling;
+use super::uncertainty_build::{centres, falling};
 use super::{
     ArmSpec, Cell, CellError, ContactSpec, DEFAULT_SPEEDS, FILE_BYTES_MAX, FixtureSpec,
     ForceSensorSpec, GripperSpec, HoleSpec, InputRule, ItemSpec, OffsetSpec, Part, PegSpec, Shape,
@@ -219,6 +219,7 @@ impl Builder<'_> {
             closed_level: level(file.closed),
             near_m: file.near_mm.0 * MM,
             near_rad: file.near_deg.0 * DEG,
+            centres: centres(file.centres),
             grasp_offset: offset(&file.grasp_offset),
             slip: file.slip.as_ref().map(|slip| self.slip(slip)).transpose()?,
         })

@@ -9,7 +9,8 @@ use super::number::{
     StiffnessNPerMm, StiffnessNmPerDeg, TimeS, ToolAccelerationMmPerS2, ToolSpeedMmPerS, TurnDeg,
 };
 use super::uncertainty_file::{
-    BounceFile, ChanceFile, FallingFile, FeederFile, InputStickFile, OutputStickFile, SlipFile,
+    BounceFile, CentresFile, ChanceFile, FallingFile, FeederFile, InputStickFile, OutputStickFile,
+    SlipFile,
 };
 use serde::Deserialize;
 use toml::Spanned;
@@ -129,6 +130,8 @@ pub(super) struct GripperFile {
     pub(super) closed: LevelFile,
     pub(super) near_mm: NearMm,
     pub(super) near_deg: NearDeg,
+    #[serde(default)]
+    pub(super) centres: CentresFile,
     #[serde(default)]
     pub(super) grasp_offset: OffsetFile,
     pub(super) slip: Option<Spanned<SlipFile>>,

@@ -129,6 +129,8 @@ pub struct GripperSpec {
     pub near_m: f64,
     /// How near in orientation, in radians.
     pub near_rad: f64,
+    /// Whether closing centres an item along x and along y of the tool centre point.
+    pub centres: [bool; 2],
     /// By how much taking an item moves it in the gripper, in the frame of the tool centre point.
     pub grasp_offset: OffsetSpec,
     /// How what is held slips, if it does.
@@ -302,6 +304,7 @@ impl Cell {
                 closed_level: true,
                 near_m: 5e-3,
                 near_rad: PI / 18.0,
+                centres: [false; 2],
                 grasp_offset: OffsetSpec::default(),
                 slip: None,
             }),

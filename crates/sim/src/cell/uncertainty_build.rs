@@ -4,7 +4,7 @@
 use super::build::{Builder, MM, level, offset};
 use super::file::CellFile;
 use super::number::Probability;
-use super::uncertainty_file::{FallingFile, FeederFile, SlipFile};
+use super::uncertainty_file::{CentresFile, FallingFile, FeederFile, SlipFile};
 use super::{
     CellError, ChanceSpec, FallSpec, FeederSpec, InputFlaw, InputRule, ItemSpec, OffsetSpec,
     SlipSpec,
@@ -183,6 +183,15 @@ impl Builder<'_> {
             flaws.resize(index + 1, InputFlaw::default());
         }
         Ok(&mut flaws[index])
+    }
+}
+
+pub(super) fn centres(file: CentresFile) -> [bool; 2] {
+    match file {
+        CentresFile::Nothing => [false, false],
+        CentresFile::X => [true, false],
+        CentresFile::Y => [false, true],
+        CentresFile::Xy => [true, true],
     }
 }
 

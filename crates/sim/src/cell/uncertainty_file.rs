@@ -5,6 +5,17 @@ use super::number::{ForceLimitN, ForceN, NearMm, Probability, TimeS, ToolSpeedMm
 use serde::Deserialize;
 use toml::Spanned;
 
+/// Along which axes of the tool centre point a grasp centres what it takes.
+#[derive(Clone, Copy, Deserialize, Default)]
+#[serde(rename_all = "snake_case")]
+pub(super) enum CentresFile {
+    #[default]
+    Nothing,
+    X,
+    Y,
+    Xy,
+}
+
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct SlipFile {
