@@ -78,6 +78,9 @@ impl<'a> Falling<'a> {
         if self.bodies.is_empty() {
             return Some(pose);
         }
+        // It turns over its edge, and not about its middle.
+        let [x, y] = towards.map(|part| part * self.extent_mm / MM);
+        pose = pose.displaced(Vector3::new(x, y, 0.0));
         // What lies in the way while it turns over gives way: it lands on that.
         let mut raised_mm = 0.0;
         while self.apart_mm(&pose) <= TOUCH_MM && raised_mm < 2.0 * self.extent_mm {

@@ -11,6 +11,7 @@ use crate::gripper::Rest;
 use crate::random::{self, Stream};
 use crate::route::Route;
 use crate::sim::{Sim, tcp_of};
+use crate::sweep::Push;
 use crate::world::{Owner, World, drawn_offset};
 use obverse_geometry::Pose;
 use std::f64::consts::TAU;
@@ -25,8 +26,7 @@ pub(crate) struct Travelled<'a> {
     pub(crate) fraction: f64,
     /// The largest contact force that it met, in newtons.
     pub(crate) most_n: f64,
-    /// The item that was pushed at its end, and the force on it along x and y.
-    pub(crate) pushed: Option<(usize, [f64; 2])>,
+    pub(crate) pushed: Option<Push>,
     pub(crate) tool: &'a ToolSpec,
 }
 
@@ -48,13 +48,13 @@ impl Travelled<'_> {
 impl Sim {
     /// Let happen to items what follows from a motion.
     pub(crate) fn suffer(&mut self, travelled: &Travelled<'_>) {
-        if let (Some((item, force_n)), Some(falling)) = (travelled.pushed, self.world.cell.falling)
+        if let (Some(push), Some(falling)) = (travelled.pushed, self.world.cell.falling)
+            && push.force_n > falling.knock_n
+            && self.items.rest(push.item) == Rest::Standing
+            && !self.is_seated(push.item)
         {
-            let [x, y] = force_n;
-            let strength_n = libm::hypot(x, y);
-            if strength_n > falling.knock_n && !self.is_seated(item) {
-                self.fall(item, [x / strength_n, y / strength_n], Rest::Knocked);
-            }
+            let towards = push.towards_n.map(|component_n| component_n / push.force_n);
+            self.fall(push.item, towards, Rest::Knocked);
         }
         let slip = self.world.cell.gripper.and_then(|gripper| gripper.slip);
         if let Some(slip) = slip

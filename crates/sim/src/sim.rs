@@ -112,7 +112,8 @@ impl Sim {
         &self.world.cell
     }
 
-    /// Where an item truly is, in the base frame, if it is in the cell: what tests and observers may know, not programs.
+    /// Where an item truly is, in the base frame, if it is in the cell: what tests and observers
+    /// may know, not programs.
     #[must_use]
     pub fn true_pose(&self, item: ItemId) -> Option<Pose> {
         self.items.pose(usize::from(item.0), &self.joints)

@@ -35,7 +35,7 @@ impl Sim {
         self.force_n = outcome.force_n;
         let end = self.end(&outcome, interruption, &tool.name);
         let report = end.map(|end| self.report(end, &route, &tool.tcp, &outcome, duration_s));
-        let (most_n, pushed) = (sweep.most_n, sweep.pushed());
+        let (most_n, pushed) = (sweep.most_n, sweep.pushed);
         self.suffer(&Travelled { route: &route, fraction: outcome.fraction, most_n, pushed, tool });
         self.settle();
         self.last_motion = report?;

@@ -1,4 +1,5 @@
-//! What is let go over nothing falls, what is pushed from the side is knocked over, and both stay so.
+//! What is let go over nothing falls, what is pushed from the side is knocked over, and both stay
+//! so.
 
 mod common;
 
@@ -141,4 +142,19 @@ fn pressing_from_above_knocks_nothing_over() {
     let fault = sim.execute(&advance(sim.joints(), 0.3)).unwrap_err();
     assert!(matches!(fault, Fault::Collision { .. }), "{fault}");
     assert!(!is_wrong(&sim, CauseKind::Knocked), "{:?}", sim.truth());
+}
+
+#[test]
+fn a_push_on_the_way_knocks_over_too() {
+    // The stick goes over the pin's edge by less than would stop the arm.
+    for (knock_n, is_knocked) in [(5.0, true), (39.0, false)] {
+        let mut sim = two_pins(knock_n);
+        let at = sim.joints();
+        let mut motion = push(at, 0.1, 1.0);
+        motion.force_limit_n = None;
+        motion.goal =
+            Goal::Displaced { from: at, distance_m: 0.0443, axis: Axis::MinusX, frame: Frame::Tcp };
+        sim.execute(&motion).unwrap();
+        assert_eq!(is_wrong(&sim, CauseKind::Knocked), is_knocked, "{knock_n} N");
+    }
 }

@@ -118,7 +118,8 @@ fn it_slips_more_often_in_contact() {
 #[test]
 fn it_slips_more_often_when_it_is_fast() {
     let cell = slipping(
-        "{ probability = 0.01, fast = 0.5, fast_mm_per_s = 200, offset = { normal_mm = [1, 1, 1] } }",
+        "{ probability = 0.01, fast = 0.5, fast_mm_per_s = 200, \
+         offset = { normal_mm = [1, 1, 1] } }",
     );
     let at = |speed| {
         slips(&cell, |sim| {
