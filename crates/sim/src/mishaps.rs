@@ -92,13 +92,15 @@ impl Sim {
         self.items.slip(&hand, &by);
     }
 
-    /// The gripper loses what it holds.
+    /// The gripper loses what it holds; a peg that is in a hole stays there.
     fn lose(&mut self, item: usize) {
         let world = self.world.clone();
         if let Some(gripper) = &world.cell.gripper {
             self.items.open(gripper, &self.joints);
             self.force_n = 0.0;
-            self.fall_anyhow(item);
+            if !self.is_seated(item) {
+                self.fall_anyhow(item);
+            }
         }
     }
 

@@ -228,3 +228,38 @@ fn fingers_centre_what_they_take_along_their_axes_and_no_other() {
         assert_eq!(sim.true_pose(PIN).unwrap(), lay);
     }
 }
+
+#[test]
+fn a_peg_that_is_lost_in_its_hole_stays_there() {
+    let home = "[0.4, -1.4, 1.6, -1.77, -1.57, 0.3]";
+    let text = format!(
+        "[arm]
+        home_rad = {home}
+        [gripper]
+        output = 0
+        near_mm = 5
+        near_deg = 10
+        slip = {{ in_contact = 1, lost = 1 }}
+        [[fixture]]
+        name = \"block\"
+        place = {{ taught_at_rad = {home}, xyz_mm = [0, 0, 80] }}
+        body = [{{ cuboid_mm = [80, 80, 80], at = {{ xyz_mm = [0, 0, 40] }} }}]
+        hole = [{{ diameter_mm = 20.4, depth_mm = 30, chamfer_mm = 1 }}]
+        [[item]]
+        name = \"peg\"
+        place = {{ taught_at_rad = {home} }}
+        grasp = {{ xyz_mm = [0, 0, -40] }}
+        peg = {{ diameter_mm = 20, length_mm = 60, chamfer_mm = 1 }}
+        [falling]"
+    );
+    let mut sim = Sim::new(&Cell::parse(&text).unwrap(), 1);
+    sim.set_output(0, true).unwrap();
+    assert_eq!(sim.held(), Some(PIN));
+    let report = sim.execute(&push(AT_PIN, 0.1, 5.0)).unwrap();
+    assert!((report.distance_m - 0.04).abs() < 1e-3, "on the bottom: {report:?}");
+    assert_eq!((sim.held(), sim.truth()), (None, Vec::new()));
+    // The gripper can take it where it is.
+    sim.set_output(0, false).unwrap();
+    sim.set_output(0, true).unwrap();
+    assert_eq!(sim.held(), Some(PIN));
+}
