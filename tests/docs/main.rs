@@ -10,6 +10,7 @@ mod example;
 mod page;
 mod reader;
 mod words;
+mod workcell;
 
 use page::{Block, Page};
 use reader::Reader;

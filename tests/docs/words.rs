@@ -70,22 +70,3 @@ fn every_unit_is_in_an_example() {
     let missing: Vec<&str> = UNITS.iter().copied().filter(|unit| !words.contains(*unit)).collect();
     fails(&missing, "units");
 }
-
-#[test]
-fn every_key_of_a_workcell_file_is_named() {
-    let keys = source("crates/sim/src/cell/file.rs");
-    let keys = keys.lines().filter_map(|line| line.trim().strip_prefix("pub(super) "));
-    let keys: Vec<&str> = keys
-        .filter_map(|field| field.split_once(':'))
-        .map(|(name, _)| name)
-        .filter(|name| {
-            name.bytes().all(|b| b.is_ascii_lowercase() || b.is_ascii_digit() || b == b'_')
-        })
-        .collect();
-    assert!(keys.len() > 40, "{keys:?}");
-    let page = reference().text;
-    let names: BTreeSet<&str> =
-        page.split(|c: char| !c.is_ascii_alphanumeric() && c != '_').collect();
-    let missing: Vec<&str> = keys.into_iter().filter(|key| !names.contains(key)).collect();
-    fails(&missing, "keys");
-}

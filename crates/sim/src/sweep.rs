@@ -92,6 +92,17 @@ impl Pair {
     }
 }
 
+/// A push from the side against an item that stands.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Push {
+    /// The item, by its place in the cell's list.
+    pub(crate) item: usize,
+    /// The force on it along x and y of the base frame.
+    pub(crate) towards_n: [f64; 2],
+    /// The magnitude of that.
+    pub(crate) force_n: f64,
+}
+
 /// What a look at all pairs found.
 struct Seen {
     touching: bool,
@@ -113,6 +124,10 @@ pub(crate) struct Sweep<'a> {
     moving: Vec<Moving>,
     pairs: Vec<Pair>,
     peg: Option<HeldPeg>,
+    /// The largest contact force that was met.
+    pub(crate) most_n: f64,
+    /// The hardest push from the side against an item that stands.
+    pub(crate) pushed: Option<Push>,
     /// How often all pairs may be looked at, if not as often as it takes.
     pub(crate) looks_max: Option<u32>,
 }
@@ -134,6 +149,8 @@ impl<'a> Sweep<'a> {
             moving: Vec::new(),
             pairs: Vec::new(),
             peg: HeldPeg::of(cell, items),
+            most_n: 0.0,
+            pushed: None,
             looks_max: None,
         };
         if !(world.fixed.is_empty() && sweep.resting.is_empty()) {
@@ -189,7 +206,13 @@ impl<'a> Sweep<'a> {
         force_n: f64,
         limit_n: Option<f64>,
     ) -> Outcome {
-        let sensor = Sensor { spec: &self.world.cell.force_sensor, seed: self.world.seed };
+        let outcome = self.search(until, now_s, force_n, limit_n);
+        self.note(outcome.force_n);
+        outcome
+    }
+
+    fn search(&mut self, until: f64, now_s: f64, force_n: f64, limit_n: Option<f64>) -> Outcome {
+        let sensor = Sensor { spec: &self.world.sensor, seed: self.world.seed };
         // Where noise alone may exceed the limit, every sample counts.
         let watched = limit_n.is_some_and(|limit| limit <= sensor.idle_max_n());
         if self.pairs.is_empty() && !watched {
@@ -226,8 +249,25 @@ impl<'a> Sweep<'a> {
             } else {
                 reader.rest();
             }
+            self.note(here.force_n);
             before = here;
             fraction = seen.next.max(fraction + f64::EPSILON).min(until);
+        }
+    }
+
+    /// Take note of the forces where the motion has come to.
+    fn note(&mut self, force_n: f64) {
+        self.most_n = self.most_n.max(force_n);
+        if force_n <= 0.0 || self.resting.is_empty() {
+            return;
+        }
+        for pair in &self.pairs {
+            let Owner::Item(item) = self.standing(pair.standing).owner else { continue };
+            let [x, y] = [-pair.force_n.x, -pair.force_n.y];
+            let push = Push { item, towards_n: [x, y], force_n: libm::hypot(x, y) };
+            if self.pushed.is_none_or(|most| push.force_n > most.force_n) {
+                self.pushed = Some(push);
+            }
         }
     }
 

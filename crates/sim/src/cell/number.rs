@@ -71,6 +71,8 @@ numbers! {
     ForceLimitN, "a force limit in N", 0.1, 10_000.0;
     /// The bias of a sensor in newtons.
     BiasN, "a bias in N", -1_000.0, 1_000.0;
+    /// A probability.
+    Probability, "a probability", 0.0, 1.0;
     /// The time between two samples of a sensor in seconds.
     SampleS, "a sampling time in s", 0.000_5, 1.0;
 }

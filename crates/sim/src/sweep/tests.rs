@@ -5,13 +5,14 @@ use crate::cell::Cell;
 use crate::random::{Stream, unit};
 use obverse_geometry::JointConfiguration;
 use obverse_workcell::{Goal, Motion, Path, Speed, ToolId};
+use std::sync::Arc;
 
 /// How many places of a route brute force looks at.
 const PLACES: u32 = 200;
 
 fn world() -> World {
     let text = include_str!("../../../../programs/bench_cell.toml");
-    World::new(&Cell::parse(text).unwrap(), 1)
+    World::new(Arc::new(Cell::parse(text).unwrap()), 1)
 }
 
 fn route(world: &World, from: &JointConfiguration, to: Goal, path: Path) -> Option<Route> {
