@@ -13,8 +13,6 @@ pub trait Recorder {
     fn joints(&mut self, joints: JointConfiguration);
     /// Write a word on whose turn it was.
     fn control(&mut self, word: u64);
-    /// Whether more has been recorded than may be.
-    fn is_full(&self) -> bool;
 }
 
 /// The recorder of a run that will not go back.
@@ -30,10 +28,6 @@ impl Recorder for NoTape {
     fn joints(&mut self, _: JointConfiguration) {}
     #[inline(always)]
     fn control(&mut self, _: u64) {}
-    #[inline(always)]
-    fn is_full(&self) -> bool {
-        false
-    }
 }
 
 /// A place on the tape: the length of each stream.
@@ -98,13 +92,6 @@ impl Recorder for Tape {
     fn control(&mut self, word: u64) {
         self.control.push(word);
     }
-
-    #[inline(always)]
-    fn is_full(&self) -> bool {
-        let joints = self.joints.full_chunks() * size_of::<[f64; 6]>() / size_of::<u64>();
-        let words = self.words.full_chunks() + self.control.full_chunks();
-        words + self.bits.full_chunks() + joints > self.limit_chunks
-    }
 }
 
 impl Tape {
@@ -130,6 +117,28 @@ impl Tape {
             joints: self.joints.len() as u64,
             control: self.control.len() as u64,
         }
+    }
+
+    /// How many chunks are full, each as large as one of words.
+    fn held_chunks(&self) -> usize {
+        let joints = self.joints.full_chunks() * size_of::<[f64; 6]>() / size_of::<u64>();
+        let words = self.words.full_chunks() + self.control.full_chunks();
+        words + self.bits.full_chunks() + joints
+    }
+
+    /// Whether more has been recorded than may be.
+    #[must_use]
+    pub fn is_full(&self) -> bool {
+        self.held_chunks() > self.limit_chunks
+    }
+
+    /// How many words, or bits in their place, can be recorded with it being full never once in
+    /// between: whoever records no more need not ask.
+    #[must_use]
+    pub fn room_words(&self) -> u64 {
+        // The chunks that are being filled, of words and of bits, may be about to be full.
+        let chunks = self.limit_chunks.saturating_sub(self.held_chunks() + 1);
+        (chunks as u64).saturating_mul(CHUNK as u64)
     }
 
     /// Whether nothing is on it.

@@ -21,11 +21,13 @@ pub mod machine;
 pub mod observe;
 mod ops;
 pub mod pure;
+mod reversed;
 mod snapshot;
 pub mod state;
 mod step;
 pub mod stop;
 mod task;
+mod update;
 pub mod values;
 mod written;
 
