@@ -132,8 +132,8 @@ impl Tape {
         self.held_chunks() > self.limit_chunks
     }
 
-    /// How many words, or bits in their place, can be recorded with it being full never once in
-    /// between: whoever records no more need not ask.
+    /// How many words, or bits in their place, can be recorded for certain before it is full:
+    /// whoever records no more need not ask in between.
     #[must_use]
     pub fn room_words(&self) -> u64 {
         // The chunks that are being filled, of words and of bits, may be about to be full.
@@ -241,4 +241,29 @@ pub struct Streams {
     pub control: Vec<u64>,
     /// What was recorded before and dropped, in bits.
     pub dropped_bits: u64,
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_tape_is_not_full_before_its_room_is_used_up() {
+        let mut tape = Tape::with_limit(5 * CHUNK * 8);
+        // The next bit needs another chunk, and the next word but one.
+        (0..64 * CHUNK + 63).for_each(|_| tape.bit(true));
+        (1..CHUNK).for_each(|_| tape.word(7));
+        let mut asked = 0;
+        while !tape.is_full() {
+            asked += 1;
+            for _ in 0..tape.room_words() {
+                tape.word(7);
+                assert!(!tape.is_full(), "after {} words", tape.place().words);
+            }
+            tape.bit(true);
+            tape.word(7);
+        }
+        assert_eq!(tape.place().words, 5 * CHUNK as u64 + 1);
+        assert_eq!(asked, 2);
+    }
 }

@@ -14,7 +14,7 @@ use crate::values::{Values, Variables};
 use obverse_isa::{CounterId, Instr, Label, for_each_op, op};
 use obverse_tape::{Record, Recorder, Tape, record};
 
-/// The most words that a step of the loops records.
+/// The most words that a step of the loops records: a counter has three, and a landing a bit.
 pub(crate) const MAX_STEP_WORDS: u64 = 4;
 
 /// Why a loop returned.

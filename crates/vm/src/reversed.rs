@@ -68,9 +68,10 @@ fn is_plain_jump(instr: Instr) -> bool {
     instr.info().family == Family::Flow && instr.jump_target().is_some() && !is_loop
 }
 
-/// An instruction as a run in reverse meets it: what undoes its statement, and the ways on from there: beside it, and by the
-/// jump that it names. They pass over the statements that have nothing to do in reverse: one
-/// load stands for a label, the prefix of a jump, and a dispatch for each statement passed over.
+/// An effect as a run in reverse meets it: what undoes its statement, and the ways on from there,
+/// beside it and by the jump that it names. They pass over the statements that have nothing to do
+/// in reverse: one load stands for a label, the prefix of a jump, and a dispatch for each statement
+/// passed over.
 #[derive(Clone, Copy, Debug)]
 #[repr(align(32))]
 pub(crate) struct Reversed {

@@ -10,7 +10,8 @@ use crate::hot;
 use crate::values::{CounterSlots, Fixed, Settings, Values, Variables, Words};
 use obverse_isa::{Class, CounterId, Family, Instr, OperandKind, for_each_op, op};
 
-/// Undo an update: add `scales[0] * slots[0] + scales[1] * slots[1] + constant` to a slot, wrapping.
+/// The undoing of an update: a slot gets `scales[0] * slots[0] + scales[1] * slots[1] + constant`
+/// added, wrapping. What is not read has the scale 0.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Update {
     changed: u8,
