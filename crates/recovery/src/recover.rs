@@ -54,8 +54,8 @@ pub struct Site<'s, 'p, C> {
     pub trail: &'s Trail<'p>,
     /// The error and what has been tried.
     pub incident: &'s Incident,
-    /// What will be done otherwise on the way forward again.
-    pub change: Option<Alteration>,
+    /// What will be done otherwise on the way forward again, by attempt that is left.
+    pub changes: Vec<Option<Alteration>>,
 }
 
 /// Who knows what will come of going back.
@@ -283,13 +283,16 @@ impl<'p, C: Workcell> Run<'_, 'p, '_, C> {
     }
 
     fn foresee(&mut self, index: usize) -> Result<Plan, GiveUp> {
-        let change = self.change(&self.open[index]);
+        let incident = &self.open[index];
+        let made = incident.attempts.len() as u32;
+        let attempts = made + 1..=self.bounds(incident).attempts;
+        let changes = attempts.map(|attempt| self.change(incident, attempt)).collect();
         let site = Site {
             machine: self.machine,
             cell: &*self.cell,
             trail: &self.trail,
-            incident: &self.open[index],
-            change,
+            incident,
+            changes,
         };
         let foresight = self.recovery.foresight.as_mut().ok_or(GiveUp::Strategy)?;
         let actions = foresight.depth(&site).ok_or(GiveUp::WouldNotHelp)?;
@@ -314,11 +317,7 @@ impl<'p, C: Workcell> Run<'_, 'p, '_, C> {
     }
 
     fn check_bounds(&self, incident: &Incident) -> Result<(), GiveUp> {
-        let said = self.declared(incident).bounds;
-        let own = self.recovery.bounds;
-        let attempts = said.attempts.unwrap_or(own.attempts);
-        let time_s = said.time_s.unwrap_or(own.time_s);
-        let distance_m = said.distance_m.unwrap_or(own.distance_m);
+        let Bounds { attempts, time_s, distance_m } = self.bounds(incident);
         if incident.attempts.len() as u64 >= u64::from(attempts) {
             Err(GiveUp::Attempts(attempts))
         } else if self.cell.now_s() - incident.began_s >= time_s {
@@ -330,13 +329,23 @@ impl<'p, C: Workcell> Run<'_, 'p, '_, C> {
         }
     }
 
+    /// What may be spent on an incident.
+    fn bounds(&self, incident: &Incident) -> Bounds {
+        let said = self.declared(incident).bounds;
+        let own = self.recovery.bounds;
+        Bounds {
+            attempts: said.attempts.unwrap_or(own.attempts),
+            time_s: said.time_s.unwrap_or(own.time_s),
+            distance_m: said.distance_m.unwrap_or(own.distance_m),
+        }
+    }
+
     fn declared(&self, incident: &Incident) -> &'p ErrorDeclaration {
         &self.module().errors[incident.error.index()]
     }
 
-    /// What the attempt that is about to be made does otherwise.
-    fn change(&self, incident: &Incident) -> Option<Alteration> {
-        let attempt = incident.attempts.len() as u32 + 1;
+    /// What an attempt, counted from 1, does otherwise.
+    fn change(&self, incident: &Incident, attempt: u32) -> Option<Alteration> {
         let motion = self.trail.actions().last().and_then(Action::motion);
         let policy = reversal(self.declared(incident))?;
         let reverses = !matches!(
@@ -348,7 +357,8 @@ impl<'p, C: Workcell> Run<'_, 'p, '_, C> {
     }
 
     fn carry_out(&mut self, index: usize, plan: Plan) -> Result<(), GiveUp> {
-        let change = self.change(&self.open[index]);
+        let incident = &self.open[index];
+        let change = self.change(incident, incident.attempts.len() as u32 + 1);
         let began_s = self.cell.now_s();
         let actions = if let Plan::Back { actions, .. } = plan { actions } else { 0 };
         match plan {

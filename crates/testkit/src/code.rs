@@ -661,8 +661,9 @@ impl Body<'_, '_> {
 
     fn error(&mut self) -> Result<()> {
         let error = ErrorId(u16::from(self.pick(2)?));
-        match self.pick(3)? {
+        match self.pick(4)? {
             0 => drop(self.code.push(op::ErrorRaise { error })),
+            3 => drop(self.code.push(op::ErrorDue { error })),
             1 => drop(self.code.push(op::ErrorClear { error })),
             _ => {
                 self.code.push(op::PushBool { value: Level::High });
