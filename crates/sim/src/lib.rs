@@ -27,13 +27,17 @@ pub mod random;
 mod reader;
 mod robot;
 mod route;
+pub mod seat;
+mod seating;
 mod sensor;
 mod sim;
 mod sweep;
 mod travel;
+mod turned;
 mod world;
 
 pub use cell::{Cell, CellError, CellPlaces};
 pub use faults::FaultPlan;
 pub use plan::Plan;
+pub use seating::Seating;
 pub use sim::Sim;

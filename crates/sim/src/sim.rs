@@ -9,6 +9,7 @@ use crate::gripper::Inventory;
 use crate::inputs::{self, Output};
 use crate::kinematics::forward;
 use crate::random::{self, Stream};
+use crate::seating::Seating;
 use crate::sensor::Sensor;
 use crate::world::World;
 use obverse_geometry::{JointConfiguration, Pose};
@@ -31,6 +32,8 @@ pub struct Sim {
     pub(crate) acts: Acts,
     outputs: Vec<Output>,
     pub(crate) items: Inventory,
+    /// How each item is in a seat, if it is in one.
+    pub(crate) seatings: Vec<Option<Seating>>,
     /// The contact force where the arm stands, in newtons.
     pub(crate) force_n: f64,
     pub(crate) last_motion: MotionReport,
@@ -50,6 +53,7 @@ impl Sim {
             acts: Acts::default(),
             outputs: vec![Output::default(); usize::from(cell.output_count)],
             items: Inventory::new(world.item_poses()),
+            seatings: vec![None; cell.items.len()],
             force_n: 0.0,
             last_motion: MotionReport {
                 end: MotionEnd::Reached,
@@ -90,6 +94,12 @@ impl Sim {
         self.items.pose(usize::from(item.0), &self.joints)
     }
 
+    /// How an item is in a seat, if it was brought into one: what tests and observers may know.
+    #[must_use]
+    pub fn seating(&self, item: ItemId) -> Option<&Seating> {
+        self.seatings.get(usize::from(item.0))?.as_ref()
+    }
+
     /// The whole state of the world as numbers, beyond what a program can command: the clock, a
     /// stop, and where every item truly is.
     pub fn world_state(&self, sink: &mut dyn FnMut(u64)) {
@@ -101,6 +111,16 @@ impl Sim {
                 pose.rotation.iter().for_each(|x| sink(x.to_bits()));
                 pose.translation_m.iter().for_each(|x| sink(x.to_bits()));
             }
+        }
+        self.seatings_as_numbers(sink);
+    }
+
+    /// How items are in seats, as numbers.
+    pub(crate) fn seatings_as_numbers(&self, sink: &mut dyn FnMut(u64)) {
+        for seating in self.seatings.iter().flatten() {
+            sink(seating.depth_m.to_bits());
+            sink(seating.turned_rad.to_bits());
+            sink(u64::from(seating.crossed));
         }
     }
 
@@ -123,6 +143,9 @@ impl Sim {
         if level == gripper.closed_level {
             self.close_gripper();
         } else {
+            if let Some(seating) = self.items.held().and_then(|item| self.seatings[item].as_mut()) {
+                seating.is_held = false;
+            }
             // What is let go no longer presses on the sensor.
             self.items.open(&self.joints);
             self.force_n = 0.0;
