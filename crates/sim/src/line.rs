@@ -172,7 +172,8 @@ impl Line {
     }
 }
 
-/// The turn from one pose to another by the shorter way, axis times angle in the frame of the first.
+/// The turn from one pose to another by the shorter way, axis times angle in the frame of the
+/// first.
 pub(crate) fn turn_between(from: &Pose, to: &Pose) -> Vector3<f64> {
     from.inverse().compose(to).rotation_vector_rad().into()
 }

@@ -263,12 +263,12 @@ fn displaced(
 }
 
 fn check_turn(angle_rad: f64, advance_m: f64) -> Result<(), Fault> {
-    // Written so that a value that is not a number fails.
-    if !(angle_rad.abs() <= turned::ANGLE_RAD_MAX) {
+    let within = |value: f64, most: f64| (-most..=most).contains(&value);
+    if !within(angle_rad, turned::ANGLE_RAD_MAX) {
         let most = turned::ANGLE_RAD_MAX;
         return Err(bad(format!("a turn by {angle_rad} rad, which must be within {most:.1} rad")));
     }
-    if !(advance_m.abs() <= FAR_M) {
+    if !within(advance_m, FAR_M) {
         return Err(bad(format!("an advance by {advance_m} m, which must be within {FAR_M} m")));
     }
     Ok(())

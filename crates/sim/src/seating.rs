@@ -4,6 +4,7 @@
 //! in a seat outlasts a motion, and the grip of the hand: [`Seating`] keeps it.
 
 use crate::cell::HoleSpec;
+use crate::line::Line;
 use crate::route::Route;
 use crate::seat::{Around, Hand, Seat, Seated, Start, Thread};
 use crate::world::Hole;
@@ -101,7 +102,7 @@ impl Approach {
             twist_rad,
             turn_rad: route.turn_about_rad(&axis),
             caught_rad: 0.0,
-            way_m: route.line.as_ref().map(|line| line.length_m()),
+            way_m: route.line.as_ref().map(Line::length_m),
         };
         if let Seat::Thread(thread) = &seat {
             approach.come_to(thread, route, left.is_some());
