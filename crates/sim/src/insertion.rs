@@ -7,7 +7,7 @@ use crate::gripper::Inventory;
 use crate::peg::{Contact, Fit, Held};
 use crate::route::Route;
 use crate::seat::{Around, Seat};
-use crate::seating::{Approach, Carried, Seating};
+use crate::seating::{self, Approach, Carried, Seating};
 use crate::world::{Hole, Owner, World};
 use nalgebra::Vector3;
 use obverse_geometry::Pose;
@@ -82,6 +82,9 @@ impl HeldPeg {
             let Owner::Fixture(fixture) = part.owner else { continue };
             for (hole, drilled) in part.holes.iter().enumerate() {
                 let Some(seat) = self.seat(&drilled.spec) else { continue };
+                if !seating::comes_near(drilled, &carried, route) {
+                    continue;
+                }
                 let left =
                     left.filter(|left| (left.fixture, left.hole) == (fixture, drilled.spec.number));
                 let approach = Approach::new(drilled, seat, carried, route, left);

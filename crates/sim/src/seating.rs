@@ -18,6 +18,9 @@ const BISECTIONS: u32 = 48;
 const LOOK_RAD: f64 = 0.05;
 /// How far it is moved along the axis between two looks, at most and at least, in metres.
 const LOOK_M: (f64, f64) = (1e-5, 0.25e-3);
+/// How far the item's end may stray from a straight line where it passes the mouth of a hole, on a
+/// line and by joints, in metres.
+const STRAYS_M: (f64, f64) = (2e-3, 0.1);
 /// A turn this near to the last is tight, in radians.
 const TIGHT_RAD: f64 = 0.1;
 
@@ -201,6 +204,21 @@ pub(crate) struct Left {
     pub(crate) turned_rad: f64,
     pub(crate) crossed: bool,
     pub(crate) is_seated: bool,
+}
+
+/// Whether a motion begins in a hole or may lead into it, by where the item's end passes the mouth.
+pub(crate) fn comes_near(hole: &Hole, carried: &Carried, route: &Route) -> bool {
+    let tip_m = |fraction| carried.in_hole(hole, &route.mount_at(fraction)).0;
+    let (from, to) = (tip_m(0.0), tip_m(1.0));
+    if from.z > 0.0 {
+        return is_inside(&hole.spec, &from);
+    }
+    if to.z <= 0.0 {
+        return false;
+    }
+    let passes = from + (to - from) * (from.z / (from.z - to.z));
+    let strays_m = if route.line.is_some() { STRAYS_M.0 } else { STRAYS_M.1 };
+    passes.xy().norm() <= 0.5 * hole.spec.diameter_m + hole.spec.chamfer_m + strays_m
 }
 
 /// Whether the end of an item is below the mouth of a hole, within its edge.
