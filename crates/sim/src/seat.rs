@@ -162,6 +162,14 @@ impl Seat {
         away.into_iter().fold(f64::INFINITY, f64::min)
     }
 
+    /// How far an item can be turned before its contact changes at once.
+    #[must_use]
+    pub fn steady_rad(&self, start: &Start, hand: &Hand) -> f64 {
+        let Self::Thread(thread) = self else { return f64::INFINITY };
+        let wanted_rad = start.turned_rad + hand.turned_rad;
+        wanted_rad.abs().min((thread.most_rad(start) - wanted_rad).abs())
+    }
+
     fn give_n_per_m(&self, around: &Around) -> f64 {
         match self {
             Self::Thread(Thread { give_n_per_m: Some(give), .. }) => *give,
@@ -209,10 +217,14 @@ impl Thread {
         if wanted_rad <= 0.0 {
             return (hand.depth_m.min(self.at_m), 0.0, 0.0);
         }
-        let most_rad = if start.crossed { self.cross_rad } else { self.turns_rad };
-        let turned_rad = wanted_rad.min(most_rad);
+        let turned_rad = wanted_rad.min(self.most_rad(start));
         let twist_n = self.tighten_n_per_rad * (wanted_rad - turned_rad);
         (self.at_m + self.lead_m(turned_rad), turned_rad, twist_n)
+    }
+
+    /// How far an item turns until it is tight.
+    fn most_rad(&self, start: &Start) -> f64 {
+        if start.crossed { self.cross_rad } else { self.turns_rad }
     }
 
     /// How far a turn leads.

@@ -14,9 +14,9 @@ use std::f64::consts::TAU;
 
 /// Halvings of a route in search of where an item comes to a thread.
 const BISECTIONS: u32 = 48;
-/// How far an item is turned between two looks, at most, in radians.
-const LOOK_RAD: f64 = 0.05;
-/// How far it is moved along the axis between two looks, at most and at least, in metres.
+/// How far an item is turned between two looks, at least and at most, in radians.
+const LOOK_RAD: (f64, f64) = (0.02, 0.3);
+/// How far it is moved along the axis between two looks, at least and at most, in metres.
 const LOOK_M: (f64, f64) = (1e-5, 0.25e-3);
 /// How far the item's end may stray from a straight line where it passes the mouth of a hole, on a
 /// line and by joints, in metres.
@@ -173,7 +173,8 @@ impl Approach {
         let seated = self.seat.seated(around, &self.start, &hand);
         let steady_m = self.seat.steady_m(around, &hand).clamp(LOOK_M.0, LOOK_M.1);
         let stride = self.way_m.map(|way_m| {
-            let by_turn = LOOK_RAD / self.turn_rad.abs();
+            let steady_rad = self.seat.steady_rad(&self.start, &hand).clamp(LOOK_RAD.0, LOOK_RAD.1);
+            let by_turn = steady_rad / self.turn_rad.abs();
             by_turn.min(steady_m / way_m)
         });
         (seated, hand, stride)
