@@ -1,10 +1,12 @@
 """Inserted or jammed: the project's contact of a peg and a hole against MuJoCo's, over a grid.
 
-Usage: insertions.py OURS [--processes N] [--every N] [--out FILE]
+Usage: insertions.py OURS [--processes N] [--every N] [--rounding MM] [--out FILE]
 OURS is the program built from crates/sim/examples/insertions.rs. Exits with 1 below the targets.
 """
 
 import argparse
+import dataclasses
+import functools
 import itertools
 import json
 import math
@@ -19,7 +21,6 @@ import mujoco_peg
 # A peg of 20 mm in a hole with a chamfer of 1 mm, held as in programs/peg_in_hole.toml.
 FIXED = {
     "peg_radius_mm": 10.0,
-    "peg_chamfer_mm": mujoco_peg.ROUNDING_AS_CHAMFER * mujoco_peg.SETTINGS.rounding_mm,
     "hole_chamfer_mm": 1.0,
     "depth_mm": 30.0,
     "axial_n_per_mm": 50.0,
@@ -49,12 +50,13 @@ def canonical(cell):
     return (friction, 0 if OFFSETS_MM[offset] == 0.0 else direction, clearance, tilt, offset)
 
 
-def trial(cell):
+def trial(cell, rounding_mm=mujoco_peg.SETTINGS.rounding_mm):
     friction, direction, clearance, tilt, offset = cell
     angle = math.radians(DIRECTIONS_DEG[direction])
     length = OFFSETS_MM[offset]
     return {
         **FIXED,
+        "peg_chamfer_mm": mujoco_peg.ROUNDING_AS_CHAMFER * rounding_mm,
         "friction": FRICTIONS[friction],
         "clearance_mm": CLEARANCES_MM[clearance],
         "tilt_rad": math.radians(TILTS_DEG[tilt]),
@@ -146,14 +148,18 @@ def main():
     parser.add_argument("ours")
     parser.add_argument("--processes", type=int, default=multiprocessing.cpu_count())
     parser.add_argument("--every", type=int, default=1, help="only every so many cells")
+    parser.add_argument("--rounding", type=float, default=mujoco_peg.SETTINGS.rounding_mm,
+                        metavar="MM", help="of the edges in MuJoCo")
     parser.add_argument("--out", help="write each cell as a line of JSON")
     arguments = parser.parse_args()
     chosen = cells()[:: arguments.every]
-    trials = [trial(cell) for cell in chosen]
+    trials = [trial(cell, arguments.rounding) for cell in chosen]
+    settings = dataclasses.replace(mujoco_peg.SETTINGS, rounding_mm=arguments.rounding)
+    insert = functools.partial(mujoco_peg.insert, settings=settings)
     began = time.time()
     ours = dict(zip(chosen, by_ours(arguments.ours, trials)))
     with multiprocessing.Pool(arguments.processes) as pool:
-        theirs = dict(zip(chosen, pool.map(mujoco_peg.insert, trials, chunksize=8)))
+        theirs = dict(zip(chosen, pool.map(insert, trials, chunksize=8)))
     print(f"{len(chosen)} insertions in {time.time() - began:.0f} s, "
           f"MuJoCo {mujoco_peg.mujoco.__version__}\n")
     if arguments.out:

@@ -51,8 +51,8 @@ const SNAP: &str = "{ diameter_mm = 10.1, depth_mm = 15, chamfer_mm = 1, \
      snap = { at_mm = 12, travel_mm = 3, peak_n = 15, hold_n = 25 } }";
 const PRESS: &str = "{ diameter_mm = 9.98, depth_mm = 15, chamfer_mm = 1, \
      press = { force_n_per_mm = 3, hold_n = 30 } }";
-const THREAD: &str = "{ diameter_mm = 10.1, depth_mm = 15, chamfer_mm = 1, thread = \
-     { at_mm = 3, pitch_mm = 1.5, turns = 1.6, catch_mm = 0.3, catch_deg = 1, give_n_per_mm = 10 } }";
+const THREAD: &str = "{ diameter_mm = 10.1, depth_mm = 15, chamfer_mm = 1, thread = { at_mm = 3, \
+     pitch_mm = 1.5, turns = 1.6, catch_mm = 0.3, catch_deg = 1, give_n_per_mm = 10 } }";
 const BAYONET: &str = "{ diameter_mm = 10.1, depth_mm = 15, chamfer_mm = 1, thread = \
      { at_mm = 8, pitch_mm = 0, turns = 0.125, catch_mm = 0.3, catch_deg = 1 } }";
 
