@@ -98,6 +98,9 @@ impl Sim {
         if let Some(gripper) = &world.cell.gripper {
             self.items.open(gripper, &self.joints);
             self.force_n = 0.0;
+            if let Some(seating) = &mut self.seatings[item] {
+                seating.is_held = false;
+            }
             if !self.is_seated(item) {
                 self.fall_anyhow(item);
             }
@@ -126,6 +129,7 @@ impl Sim {
     fn fall(&mut self, item: usize, towards: [f64; 2], rest: Rest) {
         let world = self.world.clone();
         let Some(from) = self.items.pose(item, &self.joints) else { return };
+        self.seatings[item] = None;
         match self.with_falling(&world, item, |thing| thing.lies(&from, towards)) {
             Some(pose) => self.items.lay(item, pose, rest),
             None => self.items.remove(item),
@@ -147,6 +151,9 @@ impl Sim {
 
     /// Whether an item is a peg in a hole.
     fn is_seated(&self, item: usize) -> bool {
+        if self.seatings[item].is_some() {
+            return true;
+        }
         let (Some(peg), Some(pose)) =
             (self.world.cell.items[item].peg, self.items.pose(item, &self.joints))
         else {

@@ -121,6 +121,9 @@ impl Plan {
         let mut placed = self.clone();
         placed.sim.joints = joints;
         placed.sim.force_n = 0.0;
+        if let Some(item) = placed.sim.items.held() {
+            placed.sim.seatings[item] = None;
+        }
         placed
     }
 
@@ -159,5 +162,6 @@ impl Plan {
     /// What the gripper holds and how, and where every other item is, as numbers.
     pub fn items_as_numbers(&self, sink: &mut dyn FnMut(u64)) {
         self.sim.items.each_number(sink);
+        self.sim.seatings_as_numbers(sink);
     }
 }

@@ -10,6 +10,7 @@ use crate::gripper::Inventory;
 use crate::inputs::{Output, Sources, Wire};
 use crate::kinematics::forward;
 use crate::random::{self, Stream, counter_of};
+use crate::seating::Seating;
 use crate::sensor::Sensor;
 use crate::world::World;
 use obverse_geometry::{JointConfiguration, Pose};
@@ -39,6 +40,8 @@ pub struct Sim {
     /// How many things have fallen.
     pub(crate) falls: u64,
     pub(crate) items: Inventory,
+    /// How each item is in a seat, if it is in one.
+    pub(crate) seatings: Vec<Option<Seating>>,
     /// The contact force where the arm stands, in newtons.
     pub(crate) force_n: f64,
     pub(crate) last_motion: MotionReport,
@@ -71,6 +74,7 @@ impl Sim {
             motions: 0,
             falls: 0,
             items,
+            seatings: vec![None; world.cell.items.len()],
             force_n: 0.0,
             last_motion: MotionReport {
                 end: MotionEnd::Reached,
@@ -119,6 +123,12 @@ impl Sim {
         self.items.pose(usize::from(item.0), &self.joints)
     }
 
+    /// How an item is in a seat, if it was brought into one: what tests and observers may know.
+    #[must_use]
+    pub fn seating(&self, item: ItemId) -> Option<&Seating> {
+        self.seatings.get(usize::from(item.0))?.as_ref()
+    }
+
     /// The whole state of the world as numbers, beyond what a program can command: the clock, a
     /// stop, and where every item truly is.
     pub fn world_state(&self, sink: &mut dyn FnMut(u64)) {
@@ -130,6 +140,16 @@ impl Sim {
                 pose.rotation.iter().for_each(|x| sink(x.to_bits()));
                 pose.translation_m.iter().for_each(|x| sink(x.to_bits()));
             }
+        }
+        self.seatings_as_numbers(sink);
+    }
+
+    /// How items are in seats, as numbers.
+    pub(crate) fn seatings_as_numbers(&self, sink: &mut dyn FnMut(u64)) {
+        for seating in self.seatings.iter().flatten() {
+            sink(seating.depth_m.to_bits());
+            sink(seating.turned_rad.to_bits());
+            sink(u64::from(seating.crossed));
         }
     }
 
@@ -161,6 +181,9 @@ impl Sim {
         for (index, spec) in world.cell.feeders.iter().enumerate() {
             if usize::from(spec.output) == bit && spec.asks_level == level {
                 self.feeders[index].ask(index, self.now_s, &world, &mut self.items);
+                if self.items.held() != Some(spec.item) {
+                    self.seatings[spec.item] = None;
+                }
             }
         }
         let Some(gripper) = &world.cell.gripper else { return };
@@ -170,6 +193,9 @@ impl Sim {
         if level == gripper.closed_level {
             self.close_gripper();
         } else {
+            if let Some(seating) = self.items.held().and_then(|item| self.seatings[item].as_mut()) {
+                seating.is_held = false;
+            }
             // What is let go no longer presses on the sensor.
             let let_go = self.items.open(gripper, &self.joints);
             self.force_n = 0.0;

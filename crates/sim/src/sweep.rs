@@ -11,9 +11,10 @@
 use crate::bodies::{Mover, Moving, Place, moving, resting};
 use crate::cell::ToolSpec;
 use crate::gripper::Inventory;
-use crate::insertion::{AtHole, HeldPeg};
+use crate::insertion::{AtHole, HeldPeg, Over};
 use crate::reader::{Look, ROUNDING_N, Reader};
 use crate::route::Route;
+use crate::seating::Seating;
 use crate::sensor::Sensor;
 use crate::world::{Owner, Standing, World};
 use nalgebra::Vector3;
@@ -133,12 +134,14 @@ pub(crate) struct Sweep<'a> {
 }
 
 impl<'a> Sweep<'a> {
-    /// Prepare the search: only pairs that could meet on this route are kept.
+    /// Prepare the search: only pairs that could meet on this route are kept. The held item was
+    /// left in a seat so, if it was.
     pub(crate) fn new(
         world: &'a World,
         route: &'a Route,
         items: &Inventory,
         tool: &ToolSpec,
+        left: Option<&Seating>,
     ) -> Self {
         let cell = &world.cell;
         let mut sweep = Self {
@@ -153,6 +156,9 @@ impl<'a> Sweep<'a> {
             pushed: None,
             looks_max: None,
         };
+        if let Some(peg) = &mut sweep.peg {
+            peg.approach(world, route, items, left);
+        }
         if !(world.fixed.is_empty() && sweep.resting.is_empty()) {
             sweep.moving = moving(cell, route, items, tool);
             sweep.pairs = sweep.pair_up();
@@ -271,6 +277,12 @@ impl<'a> Sweep<'a> {
         }
     }
 
+    /// How the held item is left in a seat at a fraction of the route.
+    pub(crate) fn left(&self, fraction: f64) -> Option<Seating> {
+        let peg = self.peg.as_ref()?;
+        peg.left(fraction, &self.route.mount_at(fraction), &self.world.cell.contact)
+    }
+
     /// Look at every pair that is due.
     fn look(&mut self, fraction: f64) -> Seen {
         let mut place = Place::at(self.route, fraction);
@@ -316,15 +328,17 @@ impl<'a> Sweep<'a> {
         let (fraction, mount) = (place.fraction, place.mount);
         let (body, carrier) = moving.at(place);
         let mut apart_mm = standing.obstacle.at_least_mm(body, carrier);
-        let mut stride_mm = STEP_MM;
+        let (mut stride_mm, mut seat_stride) = (STEP_MM, None);
         pair.force_n = Vector3::zeros();
         if apart_mm < NEAR_MM {
             let contact = &self.world.cell.contact;
             let peg = self.peg.as_ref().filter(|_| moving.is_peg);
-            match peg.and_then(|peg| peg.at(&standing.holes, &mount, contact)) {
+            let (number, holes) = (pair.standing, &standing.holes);
+            let over = Over { standing: number, holes, fraction, mount: &mount };
+            match peg.and_then(|peg| peg.at(&over, contact)) {
                 Some(AtHole::Over(over_mm)) => apart_mm = over_mm.max(apart_mm),
-                Some(AtHole::In { force_n, steady_mm }) => {
-                    apart_mm = 0.0;
+                Some(AtHole::In { force_n, steady_mm, stride }) => {
+                    (apart_mm, seat_stride) = (0.0, stride);
                     pair.force_n = force_n;
                     stride_mm = steady_mm.clamp(STEP_MM, BORE_STRIDE_MM);
                 }
@@ -337,7 +351,7 @@ impl<'a> Sweep<'a> {
             }
         }
         pair.touching = apart_mm <= SKIN_MM;
-        pair.stride = stride_mm / moving.way_mm;
+        pair.stride = seat_stride.unwrap_or(stride_mm / moving.way_mm);
         pair.due = fraction + (apart_mm - 0.5 * SKIN_MM) / moving.way_mm;
     }
 

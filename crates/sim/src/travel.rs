@@ -26,9 +26,13 @@ impl Sim {
         let tool = route::tool(&world.cell, motion.tool)?;
         let route = Route::plan(&world.cell, &self.joints, motion)?;
         let until = interruption.map_or(1.0, |interruption| interruption.fraction);
-        let mut sweep = Sweep::new(&world, &route, &self.items, tool);
+        let left = self.items.held().and_then(|item| self.seatings[item].as_ref());
+        let mut sweep = Sweep::new(&world, &route, &self.items, tool, left);
         sweep.looks_max = self.looks_max;
         let outcome = sweep.run(until, self.now_s, self.force_n, motion.force_limit_n);
+        if let Some(item) = self.items.held() {
+            self.seatings[item] = sweep.left(outcome.fraction);
+        }
         self.joints = route.joints_at(outcome.fraction);
         let duration_s = route.profile.time_at_s(outcome.fraction);
         self.now_s += duration_s;

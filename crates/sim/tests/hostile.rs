@@ -75,7 +75,7 @@ fn wild(seed: u64, counter: u64) -> f64 {
 fn wild_motion(seed: u64, from: JointConfiguration) -> Motion {
     let number = |counter| wild(seed, counter);
     let choice = |counter: u64, count: u64| bits(seed, Stream::Dice, 500 + counter) % count;
-    let goal = match choice(0, 4) {
+    let goal = match choice(0, 5) {
         0 => Goal::Joints(JointConfiguration(std::array::from_fn(|joint| number(joint as u64)))),
         1 => Goal::Pose(Pose {
             rotation: Matrix3::from_fn(|row, column| number((3 * row + column) as u64)),
@@ -87,7 +87,14 @@ fn wild_motion(seed: u64, from: JointConfiguration) -> Motion {
             axis: Axis::MinusZ,
             frame: Frame::ToolMount,
         },
-        _ => Goal::Offset { from, by_m: [number(40), number(41), number(42)], frame: Frame::Base },
+        3 => Goal::Offset { from, by_m: [number(40), number(41), number(42)], frame: Frame::Base },
+        _ => Goal::Turned {
+            from,
+            angle_rad: number(43),
+            advance_m: number(44),
+            axis: Axis::PlusX,
+            frame: Frame::Tcp,
+        },
     };
     Motion {
         goal,

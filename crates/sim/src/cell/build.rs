@@ -7,6 +7,7 @@ use super::file::{
     SpeedFile, SpeedsFile, ToolFile,
 };
 use super::number::{CoordinateMm, JointRad, TurnDeg};
+use super::seat;
 use super::uncertainty_build::{centres, falling};
 use super::{
     ArmSpec, Cell, CellError, ContactSpec, DEFAULT_SPEEDS, FILE_BYTES_MAX, FixtureSpec,
@@ -335,7 +336,8 @@ impl Builder<'_> {
             return Err(self.error(hole, format!("a fixture has at most {HOLES_MAX} holes")));
         }
         let parts = self.parts(&file.body)?;
-        let holes = file.hole.iter().map(|hole| self.hole(hole, &parts));
+        let holes = file.hole.iter().enumerate();
+        let holes = holes.map(|(number, hole)| self.hole(hole, number, &parts));
         let stand = self.stand(file.on.as_ref(), &file.place, tcp, before)?;
         Ok(FixtureSpec {
             name: file.name.get_ref().clone(),
@@ -347,13 +349,22 @@ impl Builder<'_> {
         })
     }
 
-    fn hole(&self, file: &Spanned<HoleFile>, parts: &[Part]) -> Result<HoleSpec, CellError> {
-        let HoleFile { mouth, diameter_mm, depth_mm, chamfer_mm } = file.get_ref();
+    fn hole(
+        &self,
+        file: &Spanned<HoleFile>,
+        number: usize,
+        parts: &[Part],
+    ) -> Result<HoleSpec, CellError> {
+        let HoleFile { mouth, diameter_mm, depth_mm, chamfer_mm, .. } = file.get_ref();
+        let depth_m = depth_mm.0 * MM;
+        let seat = seat::of(file.get_ref(), depth_m).map_err(|why| self.error(file, why))?;
         let mut hole = HoleSpec {
+            number,
+            seat,
             part: 0,
             mouth: pose(mouth),
             diameter_m: diameter_mm.0 * MM,
-            depth_m: depth_mm.0 * MM,
+            depth_m,
             chamfer_m: chamfer_mm.map_or(0.0, |chamfer| chamfer.0 * MM),
         };
         hole.part = parts.iter().position(|part| is_drilled(part, &hole)).ok_or_else(|| {

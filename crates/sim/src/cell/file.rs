@@ -8,6 +8,7 @@ use super::number::{
     JointDeg, JointRad, JointSpeedDegPerS, NearDeg, NearMm, SampleS, SizeMm, SpreadDeg, SpreadMm,
     StiffnessNPerMm, StiffnessNmPerDeg, TimeS, ToolAccelerationMmPerS2, ToolSpeedMmPerS, TurnDeg,
 };
+use super::seat::{PressFile, SnapFile, ThreadFile};
 use super::uncertainty_file::{
     BounceFile, CentresFile, ChanceFile, FallingFile, FeederFile, InputStickFile, OutputStickFile,
     SlipFile,
@@ -229,6 +230,9 @@ pub(super) struct HoleFile {
     pub(super) depth_mm: SizeMm,
     #[serde(default)]
     pub(super) chamfer_mm: Option<ChamferMm>,
+    pub(super) snap: Option<SnapFile>,
+    pub(super) press: Option<PressFile>,
+    pub(super) thread: Option<ThreadFile>,
 }
 
 #[derive(Deserialize, Default)]

@@ -9,6 +9,7 @@ mod error;
 mod file;
 mod number;
 mod places;
+mod seat;
 mod stand;
 #[cfg(test)]
 mod tests;
@@ -20,6 +21,7 @@ pub use error::CellError;
 pub use places::CellPlaces;
 pub use uncertainty::{ChanceSpec, FallSpec, FeederSpec, InputFlaw, SlipSpec};
 
+use crate::seat::Seat;
 use obverse_geometry::{JOINT_COUNT, JointConfiguration, Pose};
 use std::f64::consts::{PI, TAU};
 
@@ -219,6 +221,8 @@ pub struct On {
 /// A round blind hole in a fixture.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct HoleSpec {
+    /// Its place in the fixture's list of holes.
+    pub number: usize,
     /// The part of the fixture that it is in, by its place in the list.
     pub part: usize,
     /// The middle of its mouth in the frame of the fixture; z points into the hole.
@@ -229,6 +233,8 @@ pub struct HoleSpec {
     pub depth_m: f64,
     /// The width of the chamfer of 45 degrees at the mouth, in metres.
     pub chamfer_m: f64,
+    /// What it does to an item beside guiding it.
+    pub seat: Option<Seat>,
 }
 
 /// How far a thing may truly be from where it should be, in its own frame: a fixed part, a part
