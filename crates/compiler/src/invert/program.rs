@@ -2,6 +2,7 @@
 //! each begins, and what the inverse needs of the rest.
 
 use super::block::Inverter;
+use super::checked::Checked;
 use super::effect::{Declared, Effect, Facts, Key, Value, constant};
 use super::refusal::refusal;
 use super::walk;
@@ -20,6 +21,7 @@ const SUFFIX: &str = "_inverse";
 /// What is to be inverted, and what is known of the program.
 pub(super) struct Plan<'s> {
     program: &'s Program<'s>,
+    pub(super) checked: Checked<'s>,
     pub(super) root: &'s str,
     /// What is inverted, callees before callers.
     order: Vec<&'s Sequence<'s>>,
@@ -64,9 +66,14 @@ impl<'s> Declared<'s> for Plan<'s> {
 
 impl<'s> Plan<'s> {
     /// What it takes to invert a sequence of a program.
-    pub(super) fn of(program: &'s Program<'s>, root: &str) -> Result<Self, Vec<Diagnostic>> {
+    pub(super) fn of(
+        program: &'s Program<'s>,
+        checked: Checked<'s>,
+        root: &str,
+    ) -> Result<Self, Vec<Diagnostic>> {
         let mut plan = Self {
             program,
+            checked,
             root: "",
             order: Vec::new(),
             sequences: HashMap::new(),

@@ -19,6 +19,7 @@ action pick { move to a; move to b linearly; move to a }
 action nudge { move 2 mm up; move 2 mm down }
 action stray { move 2 mm up }
 action goes(there: joints) { move to there; wait 1 s }
+action reads { repeat x times { toggle 4 } }
 ";
 
 fn program(body: &str) -> String {
@@ -191,4 +192,63 @@ fn what_is_allowed_is_said_of_the_sequence_alone() {
     let nested = allowing.join("\n").replace("{ toggle", "{ allow W0003 \"why\" toggle");
     assert_eq!(inverse(&nested).err(), None);
     assert_eq!(inverse(&nested), inverse(&plain.join("\n")));
+}
+
+/// The refusals, as `line "text" message`.
+fn refusals(source: &str, sequence: &str) -> Vec<String> {
+    let Err(NoInverse::Diagnosed(found)) = invert("work.obv", source, sequence) else {
+        panic!("it has an inverse");
+    };
+    let told = |one: obverse_syntax::diagnostic::Diagnostic| {
+        assert_eq!(one.code.as_str(), "E0701");
+        assert!(one.help.is_some(), "{one:?}");
+        let span = one.primary.span;
+        let line = source[..span.start as usize].lines().count().max(1);
+        let text = &source[span.start as usize..span.end as usize];
+        format!("{line} {text:?} {}", one.message)
+    };
+    found.into_iter().map(told).collect()
+}
+
+#[test]
+fn an_update_of_a_real_comes_back_rounded() {
+    let source = "\
+var gap = 0.1 mm
+var n = 0
+sequence work(by: length) {
+  n += 2
+  gap += 0.2 mm
+  var m = n
+  n -= m
+  var far: length = by
+  far -= 2 * by
+  if gap < by { n += 1 }
+}
+sequence main { call work(1 mm) }
+";
+    let found = refusals(source, "work");
+    let expected = [
+        r#"5 "gap += 0.2 mm" an update of a real has no exact inverse"#,
+        r#"9 "far -= 2 * by" an update of a real has no exact inverse"#,
+    ];
+    let is_expected = |one: &&str| found.iter().any(|found| found == one);
+    assert!(expected.iter().all(|one| is_expected(&one)), "{found:#?}");
+    becomes(
+        &["x += 1", "var near = 1 mm", "if near < 2 mm { y += 2 }"],
+        &["var near = 1 mm", "if near < 2 mm { y -= 2 }", "x -= 1"],
+    );
+}
+
+#[test]
+fn a_fork_whose_branches_read_what_others_assign() {
+    let fork = "fork { x += 1 wait 1 s } and { wait 1 s repeat x times { toggle 4 } }";
+    let message = "a fork whose branches read what others assign has no inverse";
+    refused(fork, message);
+    refused(&format!("allow W0601 \"meant\" {fork}"), message);
+    refused("fork { call reads } and { x += 1 }", message);
+    refused("repeat 2 times { fork { var z = x + 1 y += z } and { x += 1 } }", message);
+    becomes(
+        &["fork {", "x += 1", "} and {", "toggle 4", "wait 1 s", "}"],
+        &["fork {", "x -= 1", "} and {", "wait 1 s", "toggle 4", "}"],
+    );
 }
