@@ -75,7 +75,7 @@ laws! {
         inverse_goes_back >= 45
         inverts_anything_twice >= 20;
     laws(RUNS): compiles >= 100 agrees_forward >= 95 agrees_backward >= 75;
-    always_laws(RUNS): always_leads_where_the_arm_was >= 30;
+    always_laws(RUNS): always_leads_where_the_arm_was >= 15;
     files(RUNS): files_are_one_program >= 60;
     word_laws(RUNS):
         words_restore_the_program >= 50

@@ -40,7 +40,7 @@ use obverse_syntax::diagnostic::{Diagnostic, Severity};
 use obverse_syntax::sources::Sources;
 use report::Reports;
 
-pub use invert::{Inverse, NoInverse, invert, invert_files};
+pub use invert::{Inverse, NoInverse, OtherKind, invert, invert_files};
 
 /// What became of a program's text.
 #[derive(Clone, Debug)]

@@ -5,27 +5,51 @@ use crate::laws::agrees_backward_on;
 use crate::programs::{self, Options};
 use arbitrary::{Result, Unstructured};
 use obverse_compiler::compile;
-use obverse_syntax::ast::{Block, Item, StatementKind, Target};
+use obverse_syntax::ast::{Block, Item, Program, StatementKind, Target};
 use obverse_syntax::codes::Code;
 use obverse_syntax::diagnostic::Severity;
 use obverse_syntax::parse;
+use obverse_syntax::span::Span;
 use std::collections::BTreeSet;
 
 const WORDS: &str = " reversible always";
 
-/// A program of which every move is reversible always that may be goes back through the states that
-/// it came through.
+/// A program whose moves mostly go to joint configurations, every one of them reversible always that
+/// may be, goes back through the states that it came through.
 ///
 /// # Errors
 /// Those of the randomness.
 pub fn always_leads_where_the_arm_was(u: &mut Unstructured<'_>) -> Result<bool> {
     let source = programs::generate(u, Options { allow_overrides: false, ..Options::default() })?;
-    let (source, moves) = with_always(&source);
+    let (source, moves) = with_always(&to_joints(&source));
     Ok(agrees_backward_on(&source, u.arbitrary()?) && moves > 0)
 }
 
-/// A program with the words after every move that may have them, and how many did not have them
-/// before.
+/// A program of which three moves in four go to joint configurations by name, in turn.
+fn to_joints(source: &str) -> String {
+    let program = parse(source).program;
+    let joints: Vec<&str> = program
+        .items
+        .iter()
+        .filter_map(|item| match item {
+            Item::Joints(joints) => Some(joints.name.value),
+            _ => None,
+        })
+        .collect();
+    let mut spans = Vec::new();
+    each_move(&program, &mut |_, span| spans.push(span));
+    let mut text = source.to_owned();
+    for (index, span) in spans.into_iter().enumerate().rev() {
+        if let Some(name) = joints.get(index % joints.len().max(1))
+            && index % 4 != 3
+        {
+            text.replace_range(span.start as usize..span.end as usize, &format!("move to {name}"));
+        }
+    }
+    text
+}
+
+/// A program with the words after every move that may have them, and after how many.
 fn with_always(source: &str) -> (String, usize) {
     let program = parse(source).program;
     let is_joints = |name: &str| {
@@ -34,11 +58,13 @@ fn with_always(source: &str) -> (String, usize) {
         program.items.iter().any(declares)
     };
     let mut ends = BTreeSet::new();
-    for item in &program.items {
-        if let Item::Sequence(sequence) = item {
-            collect(&sequence.body, &is_joints, &mut ends);
+    each_move(&program, &mut |kind, span| {
+        if let StatementKind::Move { target: Target::Named(name), always: None, .. } = kind
+            && is_joints(name.value)
+        {
+            ends.insert(span.end);
         }
-    }
+    });
     // Where the position named last is not known, the words are left out again.
     loop {
         let (text, places) = inserted(source, &ends);
@@ -59,16 +85,20 @@ fn with_always(source: &str) -> (String, usize) {
     }
 }
 
-/// Where the moves to joint configurations end that do not have the words.
-fn collect(block: &Block<'_>, is_joints: &impl Fn(&str) -> bool, ends: &mut BTreeSet<u32>) {
-    for statement in &block.statements {
-        if let StatementKind::Move { target: Target::Named(name), always: None, .. } =
-            &statement.kind
-            && is_joints(name.value)
-        {
-            ends.insert(statement.span.end);
+/// Every move of a program, in the order of its text.
+fn each_move(program: &Program<'_>, visit: &mut impl FnMut(&StatementKind<'_>, Span)) {
+    fn each_in(block: &Block<'_>, visit: &mut impl FnMut(&StatementKind<'_>, Span)) {
+        for statement in &block.statements {
+            if matches!(statement.kind, StatementKind::Move { .. }) {
+                visit(&statement.kind, statement.span);
+            }
+            statement.blocks().into_iter().for_each(|block| each_in(block, visit));
         }
-        statement.blocks().into_iter().for_each(|block| collect(block, is_joints, ends));
+    }
+    for item in &program.items {
+        if let Item::Sequence(sequence) = item {
+            each_in(&sequence.body, visit);
+        }
     }
 }
 

@@ -86,7 +86,8 @@ fn restricted(source: &str, other: &str, sequence: &str) -> String {
 
 fn name_of<'s>(item: &Item<'s>) -> Option<&'s str> {
     match item {
-        Item::Cell(_) | Item::Import(_) | Item::Signal(_) | Item::Allow(_) => None,
+        Item::Cell(_) | Item::Import(_) | Item::Allow(_) => None,
+        Item::Signal(entry) => Some(entry.name.value),
         Item::Io(io) => Some(io.name.value),
         Item::Joints(joints) => Some(joints.name.value),
         Item::ItemDeclaration(item) => Some(item.name.value),

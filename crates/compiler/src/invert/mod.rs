@@ -55,6 +55,30 @@ pub enum NoInverse {
     Diagnosed(Vec<Diagnostic>),
     /// The program has no sequence or action of this name; one that was perhaps meant.
     UnknownSequence(Option<String>),
+    /// What has this name is done by a statement, and has its reverse with it.
+    OtherKind(OtherKind),
+}
+
+/// What is no sequence, and is done by a statement.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct OtherKind {
+    /// What it is: `an I/O operation`.
+    pub kind: &'static str,
+    /// How it is done: `io close`.
+    pub statement: String,
+}
+
+impl OtherKind {
+    fn of(program: &Program<'_>, name: &str) -> Option<Self> {
+        let of = |kind, word: &str| Some(Self { kind, statement: format!("{word} {name}") });
+        program.items.iter().find_map(|item| match item {
+            Item::Io(io) if io.name.value == name => of("an I/O operation", "io"),
+            Item::AdvancedMove(guarded) if guarded.name.value == name => {
+                of("an advanced move", "advance")
+            }
+            _ => None,
+        })
+    }
 }
 
 /// The inverse of a sequence or action, as a program of one file. To invert it again gives a
@@ -95,6 +119,9 @@ fn invert_loaded(loaded: &Loaded, name: &str, sequence: &str) -> Result<Inverse,
         }
     }
     if !program.items.iter().any(|item| name_of(item) == Some(sequence)) {
+        if let Some(other) = OtherKind::of(&program, sequence) {
+            return Err(NoInverse::OtherKind(other));
+        }
         let names = program.items.iter().filter_map(name_of);
         let meant = obverse_syntax::nearest(sequence, names);
         return Err(NoInverse::UnknownSequence(meant.map(str::to_owned)));

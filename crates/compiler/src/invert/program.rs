@@ -7,9 +7,10 @@ use super::effect::{Declared, Effect, Facts, Key, Value, constant};
 use super::refusal::refusal;
 use super::walk;
 use obverse_syntax::ast::{
-    Block, IoOperation, Item, Name, Program, Sequence, Signal, SignalKind, Statement,
+    Allow, Block, IoOperation, Item, Name, Program, Sequence, Signal, SignalKind, Statement,
     StatementKind, VariableDeclaration,
 };
+use obverse_syntax::codes::Code;
 use obverse_syntax::diagnostic::Diagnostic;
 use obverse_syntax::format::print;
 use obverse_syntax::span::{Span, Spanned};
@@ -363,7 +364,7 @@ impl<'s> Plan<'s> {
                     let name = one.name.value;
                     (io.made.remove(name).map(Item::Io), io.kept.contains(name))
                 }
-                Item::Cell(_) | Item::Signal(_) => (None, true),
+                Item::Cell(_) => (None, true),
                 _ => (None, false),
             };
             let item = match item {
@@ -432,6 +433,9 @@ impl<'s> Plan<'s> {
         // Nobody knows the arguments, or with which values the variables begin.
         let is_called = root.parameters.is_empty() && !is_changing;
         let statements = if is_called { vec![Statement { kind: call, span }] } else { Vec::new() };
+        if !is_called {
+            program.items.insert(0, Item::Allow(unused_here(span)));
+        }
         program.items.push(Item::Sequence(Sequence {
             name: Spanned::new("main", span),
             is_action: false,
@@ -440,6 +444,17 @@ impl<'s> Plan<'s> {
             span,
         }));
         is_called
+    }
+}
+
+/// What is said of an inverse that the program around it does not call.
+fn unused_here<'p>(span: Span) -> Allow<'p> {
+    let reason = "who calls the inverse uses it, with what it needs";
+    Allow {
+        code: Spanned::new(Code::Unused.as_str(), span),
+        in_file: true,
+        reason: Spanned::new(reason, span),
+        span,
     }
 }
 

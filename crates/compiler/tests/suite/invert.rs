@@ -252,3 +252,45 @@ fn a_fork_whose_branches_read_what_others_assign() {
         &["fork {", "x -= 1", "} and {", "wait 1 s", "toggle 4", "}"],
     );
 }
+
+#[test]
+fn what_is_no_sequence_has_its_reverse_with_it() {
+    let Err(NoInverse::OtherKind(other)) = invert("work.obv", &program(""), "lamp") else {
+        panic!("it is an I/O operation")
+    };
+    assert_eq!((other.kind, other.statement.as_str()), ("an I/O operation", "io lamp"));
+}
+
+/// What has no warning has no inverse with one.
+#[test]
+fn an_inverse_that_nobody_calls_is_meant_so() {
+    let source = "\
+output lamp = 2
+output left_out = 3
+var n = 0
+action work { n += 1 toggle lamp }
+sequence main { set left_out high call work if n > 3 { wait 1 s } }
+";
+    let inverse = invert("work.obv", source, "work").expect("an inverse");
+    let found = obverse_compiler::compile("inverse.obv", &inverse.text).diagnostics;
+    assert_eq!(found, [], "{}", inverse.text);
+    assert!(!inverse.text.contains("left_out"), "{}", inverse.text);
+}
+
+/// What does not compile is said where it comes from.
+#[test]
+fn an_inverse_that_does_not_compile_names_its_statement() {
+    let source = "\
+joints a = [0, 0, 0, 0, 0, 0] deg
+joints b = [1, 0, 0, 0, 0, 0] deg
+sequence work {
+  move to a
+  move to b reversible always
+  move 2 mm up
+  move 2 mm down
+}
+sequence main { call work }
+";
+    let message = "what takes this back does not compile";
+    assert_eq!(refusals(source, "work"), [format!("5 \"reversible always\" {message}")]);
+}
