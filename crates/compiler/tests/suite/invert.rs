@@ -172,6 +172,7 @@ fn blocks_with_a_reverse_of_their_own_change_places() {
         &["do { set 7 low } in reverse { set 6 high }"],
     );
     becomes(&["skip in reverse { toggle 6 }"], &["do {} in reverse { toggle 6 }"]);
+    becomes(&["keep in reverse { toggle 6 }"], &["keep in reverse { toggle 6 }"]);
     refused("do { set 6 high } in reverse {}", "nothing replaces");
     refused("move to a\ndo { move to b } in reverse { wait 1 s }", "where these blocks end");
 }
