@@ -83,6 +83,11 @@ impl Reports {
         obverse_syntax::nearest(word, words.take(budget).inspect(|_| *compared += 1))
     }
 
+    /// Whether a warning of this code at this place is meant.
+    pub(crate) fn permits(&mut self, code: Code, at: u32) -> bool {
+        self.allows.permits(code, at)
+    }
+
     /// Whether the tree is whole.
     pub(crate) fn is_whole(&self) -> bool {
         self.is_whole

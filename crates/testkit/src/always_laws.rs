@@ -14,7 +14,7 @@ use std::collections::BTreeSet;
 
 const WORDS: &str = " reversible always";
 
-/// A program whose moves mostly go to joint configurations, every one of them reversible always that
+/// A program whose moves mostly go to joint configurations, each of them reversible always if it
 /// may be, goes back through the states that it came through.
 ///
 /// # Errors
