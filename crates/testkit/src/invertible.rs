@@ -219,6 +219,12 @@ impl Writer<'_, '_> {
     fn update(&mut self) -> Result<()> {
         let name = self.choose(&["count", "sum"])?;
         let operator = self.choose(&["+=", "-="])?;
+        // A real comes back rounded, so that this has no inverse.
+        if self.one_in(30)? {
+            let value = self.choose(&["0.3 mm", "2.3 mm", "1.1 mm * real(fixed)"])?;
+            self.line(&format!("gap {operator} {value}"));
+            return Ok(());
+        }
         let value = match self.counters.last().cloned() {
             Some(counter) if self.one_in(2)? => format!("{counter} * 2 + fixed"),
             _ if name == "sum" => self.choose(&["1", "count", "-count * 3"])?.to_owned(),
@@ -245,7 +251,7 @@ impl Writer<'_, '_> {
 
     /// What has perhaps no inverse, or is no program in normal form.
     fn stubborn(&mut self) -> Result<()> {
-        let line = match self.below(16)? {
+        let line = match self.below(14)? {
             0 => "sum = sum * 2",
             1 => "call shift",
             2 => "wait random(1 ms, 2 ms)",
@@ -255,9 +261,7 @@ impl Writer<'_, '_> {
             6 => "move 2 mm up in base",
             7 => "var unused_0 = 3",
             8 => "set 6 high",
-            9 => "gap += 0.1 mm",
-            10 => "gap -= 0.3 mm * real(fixed)",
-            11 => "fork { count += 1; wait 1 ms; count += 1 } and { wait 1 ms; call counted }",
+            9 => "fork { count += 1; wait 1 ms; count += 1 } and { wait 1 ms; call counted }",
             _ => "checkpoint mark",
         };
         let is_declaration = line.ends_with("here_0") || line.starts_with("var");
