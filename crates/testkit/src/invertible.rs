@@ -47,6 +47,7 @@ var count = 0
 var sum = 100
 var mode = 1
 var gap = 5 mm
+var width = 0.1 mm
 action pick(item_1: item, times: int) {
   move to item_1.above
   speed slow { move to q3 linearly }
@@ -220,9 +221,9 @@ impl Writer<'_, '_> {
         let name = self.choose(&["count", "sum"])?;
         let operator = self.choose(&["+=", "-="])?;
         // A real comes back rounded, so that this has no inverse.
-        if self.one_in(30)? {
+        if self.one_in(40)? {
             let value = self.choose(&["0.3 mm", "2.3 mm", "1.1 mm * real(fixed)"])?;
-            self.line(&format!("gap {operator} {value}"));
+            self.line(&format!("width {operator} {value}"));
             return Ok(());
         }
         let value = match self.counters.last().cloned() {
@@ -313,6 +314,7 @@ impl Writer<'_, '_> {
                 "not is_fast or fixed == 3",
                 "gap <= 5 mm",
                 "gap > 0.3 mm",
+                "width <= 0.1 mm",
             ])?,
             _ => "is_fast and fixed == 3",
         };
