@@ -221,7 +221,7 @@ impl Writer<'_, '_> {
         let name = self.choose(&["count", "sum"])?;
         let operator = self.choose(&["+=", "-="])?;
         // A real comes back rounded, so that this has no inverse.
-        if self.one_in(40)? {
+        if self.one_in(80)? {
             let value = self.choose(&["0.3 mm", "2.3 mm", "1.1 mm * real(fixed)"])?;
             self.line(&format!("width {operator} {value}"));
             return Ok(());

@@ -232,8 +232,8 @@ sequence main { call work(1 mm) }
         r#"5 "gap += 0.2 mm" an update of a real has no exact inverse"#,
         r#"9 "far -= 2 * by" an update of a real has no exact inverse"#,
     ];
-    let is_expected = |one: &&str| found.iter().any(|found| found == one);
-    assert!(expected.iter().all(|one| is_expected(&one)), "{found:#?}");
+    let is_expected = |one: &&str| found.iter().any(|found| found == *one);
+    assert!(expected.iter().all(is_expected), "{found:#?}");
     becomes(
         &["x += 1", "var near = 1 mm", "if near < 2 mm { y += 2 }"],
         &["var near = 1 mm", "if near < 2 mm { y -= 2 }", "x -= 1"],
