@@ -52,6 +52,16 @@ pub(crate) fn bytes(path: &Path) -> Result<Vec<u8>, Problem> {
     files::read(path).map_err(|why| Problem::of_file(path, why))
 }
 
+/// Refuse a file whose name says that it is no source text, which alone can be treated so.
+pub(crate) fn require_source(path: &Path, treated: &str) -> Result<(), Problem> {
+    let extension = path.extension().and_then(|extension| extension.to_str()).unwrap_or("");
+    if matches!(extension, "obvasm" | "obc" | "tape" | "toml") {
+        let why = format!("`.{extension}` is not for source text, which alone is {treated}");
+        return Err(Problem::of_file(path, why));
+    }
+    Ok(())
+}
+
 /// The module of a file, not verified, with the source text and its warnings, if there is one. It
 /// is a module by its first bytes, assembly text by its name (`.obvasm`), and source otherwise.
 pub(crate) fn module(path: &Path) -> Result<(Module, Option<Diagnosed>), Problem> {

@@ -7,6 +7,7 @@
 
 mod console;
 mod example;
+mod grammar;
 mod page;
 mod reader;
 mod words;

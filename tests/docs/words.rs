@@ -1,5 +1,7 @@
-//! What the reference of the language owes the grammar: every rule, word, unit and key is there.
+//! What the reference of the language owes the grammar: every rule with all its alternatives, word,
+//! unit and key is there.
 
+use crate::grammar::Grammar;
 use crate::page::{Page, ROOT};
 use obverse_syntax::{FREE_WORDS, RESERVED_WORDS, UNITS};
 use std::collections::BTreeSet;
@@ -50,6 +52,28 @@ fn every_rule_of_the_grammar_is_named() {
     let missing: Vec<&str> =
         heads.into_iter().filter(|rule| !page.contains(&format!("`{rule}`"))).collect();
     fails(&missing, "rules");
+}
+
+#[test]
+fn every_alternative_of_every_rule_is_in_an_example() {
+    let grammar = Grammar::of_page(&source("crates/syntax/GRAMMAR.md"));
+    let page = reference();
+    let mut used = BTreeSet::new();
+    for block in page.blocks().iter().filter(|block| block.language() == "obv") {
+        if block.says("wrong") {
+            continue;
+        }
+        let rule = if block.says("statements") { "statement" } else { "program" };
+        match grammar.used(rule, &block.text()) {
+            Ok(parts) => used.extend(parts),
+            Err(rest) => panic!("{}:{}: no {rule}: {rest}", page.name, block.line),
+        }
+    }
+    let missing: Vec<&str> = (0..grammar.parts.len())
+        .filter(|part| !used.contains(part))
+        .map(|part| grammar.parts[part].as_str())
+        .collect();
+    fails(&missing, "alternatives");
 }
 
 #[test]

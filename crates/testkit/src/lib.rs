@@ -4,6 +4,7 @@
 //! A dev-dependency only: nothing that ships links it.
 
 pub mod altered;
+pub mod always_laws;
 pub mod code;
 pub mod files;
 pub mod fork_code;

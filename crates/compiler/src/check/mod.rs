@@ -18,6 +18,7 @@ mod program;
 mod reverse;
 mod signals;
 mod statement;
+mod still;
 mod unused;
 
 use crate::keyframes::KeyframeFlow;
@@ -34,6 +35,7 @@ use obverse_syntax::diagnostic::Diagnostic;
 use obverse_syntax::sources::Sources;
 use obverse_syntax::span::Span;
 use std::collections::{BTreeSet, HashMap};
+use still::Movers;
 
 pub(crate) use program::check;
 
@@ -74,6 +76,7 @@ struct Checker<'s> {
     wanted_checkpoints: Vec<Name<'s>>,
     set_checkpoints: BTreeSet<&'s str>,
     keyframes: KeyframeFlow,
+    movers: Movers<'s>,
     frame: FrameScope,
     /// The kinds of thing there are too many of, so that each is reported once.
     full: Vec<&'static str>,

@@ -177,7 +177,7 @@ impl<'s> Writer<'s> {
                 self.extent(*depth, extent);
                 for change in changes {
                     self.tight(",");
-                    self.glue(Glue::Break);
+                    self.glue(Glue::Break(0));
                     match &change.value {
                         Change::Perturbed(distance) => {
                             self.word("perturbed");
