@@ -1,0 +1,124 @@
+//! The case that is a program in its workcell: each assembly is a run of a machine from the start,
+//! in a workcell that its seed has made.
+
+use crate::case::{Assembly, Case, Stand};
+use crate::outcome::{Ending, Incident, Outcome};
+use crate::strategy::Strategy;
+use obverse_bytecode::{Module, Verified};
+use obverse_sim::{Cell, Sim};
+use obverse_vm::{Direction, Limits, LinkError, Machine, Stop};
+use obverse_workcell::Clock;
+use std::collections::BTreeMap;
+
+/// A program in its workcell.
+pub struct MachineCase<'p> {
+    /// A machine at the start of the program, which is copied for each assembly.
+    machine: Machine<'p>,
+    cell: &'p Cell,
+    person_s: f64,
+    instructions: u64,
+}
+
+impl<'p> MachineCase<'p> {
+    /// A program in a workcell. An assembly that is left to a person costs so many seconds more,
+    /// and is given up after so many instructions.
+    ///
+    /// # Errors
+    /// What the program needs and the workcell lacks.
+    pub fn new(
+        program: &'p Verified,
+        cell: &'p Cell,
+        person_s: f64,
+        instructions: u64,
+    ) -> Result<Self, Vec<LinkError>> {
+        let machine = Machine::new(program, &Sim::new(cell, 0))?;
+        Ok(Self { machine, cell, person_s, instructions })
+    }
+
+    /// Whether assemblies can be made by a strategy.
+    #[must_use]
+    pub fn knows(&self, strategy: Strategy) -> bool {
+        matches!(strategy, Strategy::Stop | Strategy::Explicit)
+    }
+}
+
+impl Case for MachineCase<'_> {
+    type Memory = ();
+    type Lesson = ();
+    type Stand<'c>
+        = MachineStand<'c>
+    where
+        Self: 'c;
+
+    fn stand(&self) -> MachineStand<'_> {
+        MachineStand { case: self, places: BTreeMap::new() }
+    }
+
+    fn learn(&self, (): &mut (), (): ()) {}
+}
+
+/// Where one thread runs machines.
+pub struct MachineStand<'c> {
+    case: &'c MachineCase<'c>,
+    /// Where instructions were written, once asked for.
+    places: BTreeMap<u32, String>,
+}
+
+impl Stand<(), ()> for MachineStand<'_> {
+    fn assemble(&mut self, seed: u64, strategy: Strategy, (): &()) -> Assembly<()> {
+        let mut cell = Sim::new(self.case.cell, seed);
+        let mut machine = self.case.machine.clone();
+        let mut incidents = Vec::new();
+        let (ending, why) = loop {
+            let limits =
+                Limits::instructions(self.case.instructions.saturating_sub(machine.executed()));
+            match machine.run(Direction::Forward, limits, &mut cell, &mut ()) {
+                Stop::Raised { error, pc } => {
+                    let module = machine.program().module();
+                    incidents.push(self.incident(module, &module.errors[error.index()].name, pc));
+                    if strategy == Strategy::Stop {
+                        break (Ending::GivenUp, Some("nothing is tried".to_owned()));
+                    }
+                }
+                Stop::Finished if machine.state().raised().is_empty() => {
+                    incidents.iter_mut().for_each(|incident| incident.recovered = true);
+                    break (Ending::Succeeded, None);
+                }
+                Stop::Finished => break (Ending::GivenUp, Some("an error is pending".to_owned())),
+                Stop::Fault { fault, .. } => break (Ending::Fault, Some(fault.to_string())),
+                Stop::Trap(trap) => break (Ending::Trap, Some(trap.kind.to_string())),
+                Stop::Budget => break (Ending::Limit, Some("too many instructions".to_owned())),
+                Stop::AtStart | Stop::AtMark | Stop::OffMark | Stop::Refused(_) => {
+                    break (Ending::GivenUp, Some("it cannot be taken back".to_owned()));
+                }
+            }
+        };
+        let is_left = ending != Ending::Succeeded;
+        let outcome = Outcome {
+            ending,
+            why,
+            attempts: 0,
+            makespan_s: cell.now_s(),
+            person_s: if is_left { self.case.person_s } else { 0.0 },
+            instructions: machine.executed(),
+            incidents,
+        };
+        Assembly { outcome, lesson: () }
+    }
+}
+
+impl MachineStand<'_> {
+    fn incident(&mut self, module: &Module, error: &str, pc: u32) -> Incident {
+        let place = self.places.entry(pc).or_insert_with(|| match module.place_of(pc) {
+            Some((file, line, _)) => format!("{file}:{line}"),
+            None => format!("instruction {pc}"),
+        });
+        Incident {
+            error: error.to_owned(),
+            place: place.clone(),
+            depths: Vec::new(),
+            recovered: false,
+            cause: None,
+        }
+    }
+}
