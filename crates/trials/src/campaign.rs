@@ -20,11 +20,11 @@ pub fn run<C: Case, E>(
     mut hand_on: impl FnMut(Vec<Record>) -> Result<(), E>,
 ) -> Result<(), E> {
     let worker = || {
-        let mut stand = case.stand();
+        let mut stand = case.stand(memory);
         move |run| {
             let seed = seed_of(plan.seed, Purpose::Trial, run);
             let assemble = |strategy| {
-                let outcome = stand.assemble(seed, strategy, memory).outcome;
+                let outcome = stand.assemble(seed, strategy);
                 Record { run, seed, strategy, outcome }
             };
             plan.strategies.iter().copied().map(assemble).collect()

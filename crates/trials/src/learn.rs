@@ -4,7 +4,7 @@
 //! A memory that went on growing through the campaign would make each assembly depend on all
 //! before it, and so a shard on all other shards. So the phase comes first and is the same in
 //! every shard. It goes in epochs that double: the runs of an epoch go by what was learned from
-//! all epochs before, and their lessons are added in the order of the runs, so that all cores can
+//! all epochs before, and what they teach is added in the order of the runs, so that all cores can
 //! work and the memory does not depend on how many there are. Every assembly that counts is then
 //! judged by a memory that knows nothing of it.
 
@@ -40,15 +40,15 @@ pub fn learn<C: Case>(
     for epoch in epochs(runs) {
         let before = memory.clone();
         let worker = || {
-            let (mut stand, before) = (case.stand(), &before);
+            let mut stand = case.stand(&before);
             move |run| {
                 let seed = seed_of(seed, Purpose::Learning, run);
-                stand.assemble(seed, Strategy::Learned, before).lesson
+                stand.assemble(seed, Strategy::Learned)
             }
         };
         let mut done = epoch.start;
-        let Ok(()) = pool::ordered(jobs, epoch, worker, |lesson| {
-            case.learn(&mut memory, lesson);
+        let Ok(()) = pool::ordered(jobs, epoch, worker, |outcome| {
+            case.learn(&mut memory, &outcome);
             done += 1;
             progress(done);
             Ok::<(), Infallible>(())

@@ -25,7 +25,7 @@ pub mod table;
 pub mod tally;
 
 pub use campaign::run;
-pub use case::{Assembly, Case, Stand};
+pub use case::{Case, Stand};
 pub use learn::learn;
 pub use machine::MachineCase;
 pub use outcome::{Ending, Incident, Outcome, Record};

@@ -1,7 +1,7 @@
 //! The case that is a program in its workcell: each assembly is a run of a machine from the start,
 //! in a workcell that its seed has made.
 
-use crate::case::{Assembly, Case, Stand};
+use crate::case::{Case, Stand};
 use crate::outcome::{Ending, Incident, Outcome};
 use crate::strategy::Strategy;
 use obverse_bytecode::{Module, Verified};
@@ -9,6 +9,10 @@ use obverse_sim::{Cell, Sim};
 use obverse_vm::{Direction, Limits, LinkError, Machine, Stop};
 use obverse_workcell::Clock;
 use std::collections::BTreeMap;
+
+/// What a machine goes by that learns: nothing, as long as none does.
+#[derive(Clone, Debug, Default)]
+pub struct Memory(());
 
 /// A program in its workcell.
 pub struct MachineCase<'p> {
@@ -35,26 +39,39 @@ impl<'p> MachineCase<'p> {
         Ok(Self { machine, cell, person_s, instructions })
     }
 
+    /// What was learned, of the text that keeps it.
+    ///
+    /// # Errors
+    /// Why the text is none.
+    pub fn memory_of(&self, _text: &str) -> Result<Memory, String> {
+        Err("no strategy that learns is known".to_owned())
+    }
+
+    /// The text that keeps what was learned.
+    #[must_use]
+    pub fn text_of(&self, _: &Memory) -> String {
+        String::new()
+    }
+
     /// Whether assemblies can be made by a strategy.
     #[must_use]
     pub fn knows(&self, strategy: Strategy) -> bool {
-        matches!(strategy, Strategy::Stop | Strategy::Explicit)
+        matches!(strategy, Strategy::Stop | Strategy::Explicit | Strategy::Declared)
     }
 }
 
 impl Case for MachineCase<'_> {
-    type Memory = ();
-    type Lesson = ();
+    type Memory = Memory;
     type Stand<'c>
         = MachineStand<'c>
     where
         Self: 'c;
 
-    fn stand(&self) -> MachineStand<'_> {
+    fn stand<'c>(&'c self, _: &'c Memory) -> MachineStand<'c> {
         MachineStand { case: self, places: BTreeMap::new() }
     }
 
-    fn learn(&self, (): &mut (), (): ()) {}
+    fn learn(&self, _: &mut Memory, _: &Outcome) {}
 }
 
 /// Where one thread runs machines.
@@ -64,8 +81,8 @@ pub struct MachineStand<'c> {
     places: BTreeMap<u32, String>,
 }
 
-impl Stand<(), ()> for MachineStand<'_> {
-    fn assemble(&mut self, seed: u64, strategy: Strategy, (): &()) -> Assembly<()> {
+impl Stand for MachineStand<'_> {
+    fn assemble(&mut self, seed: u64, strategy: Strategy) -> Outcome {
         let mut cell = Sim::new(self.case.cell, seed);
         let mut machine = self.case.machine.clone();
         let mut incidents = Vec::new();
@@ -94,7 +111,7 @@ impl Stand<(), ()> for MachineStand<'_> {
             }
         };
         let is_left = ending != Ending::Succeeded;
-        let outcome = Outcome {
+        Outcome {
             ending,
             why,
             attempts: 0,
@@ -102,8 +119,7 @@ impl Stand<(), ()> for MachineStand<'_> {
             person_s: if is_left { self.case.person_s } else { 0.0 },
             instructions: machine.executed(),
             incidents,
-        };
-        Assembly { outcome, lesson: () }
+        }
     }
 }
 

@@ -1,5 +1,8 @@
 //! Shares, means and quantiles, with how far they can be trusted.
 
+/// The share of intervals that hold what they are of.
+pub const CONFIDENCE: f64 = 0.95;
+
 /// The quantile of the normal distribution that leaves 2.5 % on either side.
 const Z95: f64 = 1.959_963_984_540_054;
 

@@ -1,9 +1,7 @@
 //! A case of which everything is known: in three assemblies of ten something jams, and going back
 //! by one to four actions, as the seed says, helps.
 
-use obverse_trials::{
-    Assembly, Case, Ending, Incident, Outcome, Plan, Record, Shard, Stand, Strategy,
-};
+use obverse_trials::{Case, Ending, Incident, Outcome, Plan, Record, Shard, Stand, Strategy};
 use std::convert::Infallible;
 
 pub(crate) const PERSON_S: f64 = 300.0;
@@ -15,28 +13,25 @@ pub(crate) struct Toy;
 
 impl Case for Toy {
     type Memory = Memory;
-    type Lesson = Option<usize>;
-    type Stand<'c> = Toy;
+    type Stand<'c> = ToyStand<'c>;
 
-    fn stand(&self) -> Toy {
-        Toy
+    fn stand<'c>(&'c self, memory: &'c Memory) -> ToyStand<'c> {
+        ToyStand(memory)
     }
 
-    fn learn(&self, memory: &mut Memory, lesson: Option<usize>) {
+    fn learn(&self, memory: &mut Memory, outcome: &Outcome) {
         memory.resize(5, 0);
-        if let Some(depth) = lesson {
-            memory[depth] += 1;
+        for incident in &outcome.incidents {
+            let cause = incident.cause.as_deref().and_then(|cause| cause.strip_prefix("cause "));
+            memory[cause.expect("it is known").parse::<usize>().expect("a number")] += 1;
         }
     }
 }
 
-impl Stand<Memory, Option<usize>> for Toy {
-    fn assemble(
-        &mut self,
-        seed: u64,
-        strategy: Strategy,
-        memory: &Memory,
-    ) -> Assembly<Option<usize>> {
+pub(crate) struct ToyStand<'c>(&'c Memory);
+
+impl Stand for ToyStand<'_> {
+    fn assemble(&mut self, seed: u64, strategy: Strategy) -> Outcome {
         let needed = seed % 4 + 1;
         let is_jammed = seed / 8 % 10 < 3;
         let tried: Vec<u32> = match (is_jammed, strategy) {
@@ -45,7 +40,7 @@ impl Stand<Memory, Option<usize>> for Toy {
             (true, Strategy::Escalating) => (1..=needed as u32).collect(),
             (true, Strategy::Fixed(depth)) => vec![depth],
             (true, Strategy::Learned) => {
-                let most = (0..memory.len()).max_by_key(|depth| (memory[*depth], *depth));
+                let most = (0..self.0.len()).max_by_key(|depth| (self.0[*depth], *depth));
                 vec![most.unwrap_or(1) as u32]
             }
             (true, _) => vec![needed as u32],
@@ -59,7 +54,7 @@ impl Stand<Memory, Option<usize>> for Toy {
             recovered,
             cause: Some(format!("cause {needed}")),
         };
-        let outcome = Outcome {
+        Outcome {
             ending: if is_left { Ending::GivenUp } else { Ending::Succeeded },
             why: is_left.then(|| "attempts".to_owned()),
             attempts: tried.len() as u32,
@@ -67,8 +62,7 @@ impl Stand<Memory, Option<usize>> for Toy {
             person_s: if is_left { PERSON_S } else { 0.0 },
             instructions: seed % 97,
             incidents: if is_jammed { vec![incident] } else { Vec::new() },
-        };
-        Assembly { outcome, lesson: is_jammed.then_some(needed as usize) }
+        }
     }
 }
 
