@@ -55,12 +55,21 @@ fn colour(strategy: Strategy) -> &'static str {
 /// A plot with a row for each strategy, and numbers along the other axis.
 struct Rows {
     svg: Svg,
-    range: Range<f64>,
+    axis: Axis,
     bottom: f64,
 }
 
+/// The numbers along a plot.
+struct Axis {
+    range: Range<f64>,
+    /// Whether equal factors are equally long, and not equal differences.
+    is_by_factors: bool,
+    /// Where numbers stand.
+    ticks: Vec<f64>,
+}
+
 impl Rows {
-    fn new(summary: &Summary, title: &str, under: &str, range: Range<f64>) -> Self {
+    fn new(summary: &Summary, title: &str, under: &str, axis: Axis) -> Self {
         let bottom = TOP + ROW * summary.strategies.len() as f64;
         let mut svg = Svg::new(WIDTH, bottom + 52.0);
         svg.text([20.0, 30.0], Anchor::Start, 17.0, INK, title);
@@ -69,24 +78,25 @@ impl Rows {
             let y = middle(row) + 4.5;
             svg.text([LEFT - 14.0, y], Anchor::End, 13.0, INK, &tally.strategy.to_string());
         }
-        Self { svg, range, bottom }
+        Self { svg, axis, bottom }
     }
 
     /// Where a value is.
     fn x(&self, value: f64) -> f64 {
-        let share = (value - self.range.start) / (self.range.end - self.range.start);
-        LEFT + FIELD * share.clamp(0.0, 1.0)
+        let Axis { range, is_by_factors, .. } = &self.axis;
+        let place = |value: f64| if *is_by_factors { libm::log10(value) } else { value };
+        let (start, end) = (place(range.start), place(range.end));
+        // Held in the range first: a logarithm has no place for zero.
+        let share = (place(value.clamp(range.start, range.end)) - start) / (end - start);
+        LEFT + FIELD * share
     }
 
-    fn axis(&mut self, step: f64, name: &str) {
-        let first = libm::ceil(self.range.start / step - 1e-9) as i64;
-        let last = libm::floor(self.range.end / step + 1e-9) as i64;
-        for tick in first..=last {
-            let value = tick as f64 * step;
+    fn grid(&mut self, name: &str) {
+        for value in self.axis.ticks.clone() {
             let x = self.x(value);
             self.svg.line([x, TOP], [x, self.bottom], GRID, 1.0);
-            let places = usize::from(step < 1.0);
-            let label = format!("{value:.places$}");
+            // Ticks are multiples of 1, 2 or 5: the shortest digits are few.
+            let label = format!("{}", (value * 1e6).round() / 1e6);
             self.svg.text([x, self.bottom + 18.0], Anchor::Middle, 12.0, FAINT, &label);
         }
         let middle = LEFT + FIELD / 2.0;
@@ -119,8 +129,10 @@ fn middle(row: usize) -> f64 {
 /// How much was put right, with intervals.
 fn success(summary: &Summary, under: &str) -> String {
     let title = "Errors put right, with 95 % Wilson intervals";
-    let mut rows = Rows::new(summary, title, under, 0.0..100.0);
-    rows.axis(20.0, "errors put right without a person, %");
+    let ticks = (0..=5).map(|tick| f64::from(tick) * 20.0).collect();
+    let axis = Axis { range: 0.0..100.0, is_by_factors: false, ticks };
+    let mut rows = Rows::new(summary, title, under, axis);
+    rows.grid("errors put right without a person, %");
     for (row, tally) in summary.strategies.iter().enumerate() {
         let colour = colour(tally.strategy);
         let (Some(share), Some(interval)) = (tally.all.share(), tally.all.interval()) else {
@@ -149,10 +161,11 @@ fn makespan(summary: &Summary, under: &str) -> String {
     let all: Vec<_> = summary.strategies.iter().filter_map(values).collect();
     let least = all.iter().map(|(quantiles, _)| quantiles[0]).fold(f64::INFINITY, f64::min);
     let most = all.iter().map(|(quantiles, mean)| quantiles[4].max(*mean)).fold(0.0, f64::max);
-    let (range, step) = axis_of(if least.is_finite() { least } else { 0.0 }, most);
+    let axis = Axis::around(if least.is_finite() { least } else { 0.0 }, most);
     let title = "Makespan: mean (dot), quartiles (box), 5 to 95 % (line)";
-    let mut rows = Rows::new(summary, title, under, range);
-    rows.axis(step, "seconds, with the time of a person where one had to come");
+    let mut rows = Rows::new(summary, title, under, axis);
+    let scale = if rows.axis.is_by_factors { " (logarithmic)" } else { "" };
+    rows.grid(&format!("seconds, with the time of a person where one had to come{scale}"));
     for (row, tally) in summary.strategies.iter().enumerate() {
         let Some(([low, first, median, third, high], mean)) = values(tally) else { continue };
         let colour = colour(tally.strategy);
@@ -170,21 +183,42 @@ fn makespan(summary: &Summary, under: &str) -> String {
     rows.svg.finish()
 }
 
-/// The range of an axis around values, and the step of its ticks, of which there are 4 to 10.
-fn axis_of(least: f64, most: f64) -> (Range<f64>, f64) {
-    let extent = (most - least).max(most.abs() * 0.01).max(1e-3);
-    let mut step = 1e-4;
-    // At most a few dozen rounds: each is a digit of the extent.
-    while step < 1e12 {
-        if let Some(found) = [1.0, 2.0, 5.0].iter().find(|part| extent / (step * **part) <= 8.0) {
-            step *= found;
-            break;
+/// From how many times the least value the greatest is shown by factors.
+const FAR_APART: f64 = 5.0;
+
+impl Axis {
+    /// An axis that holds these values, which are not negative.
+    fn around(least: f64, most: f64) -> Self {
+        match least > 1e-3 && most / least >= FAR_APART {
+            true => Self::by_factors(least, most),
+            false => Self::by_differences(least, most),
         }
-        step *= 10.0;
     }
-    let begin = libm::floor(least / step) * step;
-    let end = libm::ceil(most / step) * step;
-    (begin..end.max(begin + step), step)
+
+    /// With 2 to 10 ticks at equal steps.
+    fn by_differences(least: f64, most: f64) -> Self {
+        let extent = (most - least).max(most * 0.01).max(1e-3);
+        let is_few = |step: &f64| extent / step <= 8.0;
+        let step = round_numbers().find(is_few).unwrap_or(extent);
+        let (first, last) = (libm::floor(least / step), libm::ceil(most / step));
+        let last = last.max(first + 1.0);
+        let ticks = (0..=(last - first) as u64).map(|tick| (first + tick as f64) * step).collect();
+        Self { range: first * step..last * step, is_by_factors: false, ticks }
+    }
+
+    /// With ticks at 1, 2 and 5 of each power of ten.
+    fn by_factors(least: f64, most: f64) -> Self {
+        let below = round_numbers().take_while(|tick| *tick <= least).last().unwrap_or(least);
+        let above = round_numbers().find(|tick| *tick >= most).unwrap_or(most);
+        let ticks = round_numbers().filter(|tick| (below..=above).contains(tick)).collect();
+        Self { range: below..above, is_by_factors: true, ticks }
+    }
+}
+
+/// 1, 2 and 5 times powers of ten, ascending: the numbers that axes are marked at.
+fn round_numbers() -> impl Iterator<Item = f64> {
+    let powers = (-4..16).map(|power| libm::pow(10.0, f64::from(power)));
+    powers.flat_map(|power| [1.0, 2.0, 5.0].map(|part| part * power))
 }
 
 /// The most columns of depths; what is deeper shares the last.
@@ -199,7 +233,8 @@ fn depth(summary: &Summary, under: &str) -> String {
     let has_deeper = columns.len() > DEPTHS;
     columns.truncate(DEPTHS);
     let title = "How many actions a recovery went back by, share of the errors put right";
-    let mut rows = Rows::new(summary, title, under, 0.0..1.0);
+    let axis = Axis { range: 0.0..1.0, is_by_factors: false, ticks: Vec::new() };
+    let mut rows = Rows::new(summary, title, under, axis);
     let width = FIELD / columns.len().max(4) as f64;
     let centre = |column: usize| LEFT + width * (column as f64 + 0.5);
     for (column, depth) in columns.iter().enumerate() {
@@ -227,9 +262,9 @@ fn depth(summary: &Summary, under: &str) -> String {
 /// A share as a disc of that area, with its number beside it.
 fn bubble(svg: &mut Svg, [x, y]: [f64; 2], share: f64, colour: &str) {
     if share > 0.0 {
-        svg.circle([x - 12.0, y], 14.0 * libm::sqrt(share) + 1.0, colour);
+        svg.circle([x, y], 14.0 * libm::sqrt(share) + 1.0, colour);
         svg.text(
-            [x + 5.0, y + 4.0],
+            [x + 17.0, y + 4.0],
             Anchor::Start,
             10.5,
             FAINT,
@@ -257,13 +292,16 @@ mod tests {
 
     #[test]
     fn axes_hold_their_values_and_have_few_ticks() {
-        let bounds = [(0.0, 0.0), (58.1, 58.4), (20.0, 361.0), (0.0, 1e7), (1e-9, 2e-9)];
+        let bounds =
+            [(0.0, 0.0), (58.1, 58.4), (20.0, 361.0), (0.0, 1e7), (1e-9, 2e-9), (3.0, 3e5)];
         for (least, most) in bounds {
-            let (range, step) = axis_of(least, most);
+            let Axis { range, ticks, .. } = Axis::around(least, most);
             assert!(range.start <= least && most <= range.end, "{least} to {most}: {range:?}");
-            let ticks = (range.end - range.start) / step;
-            assert!((0.9..=11.0).contains(&ticks), "{least} to {most}: {ticks} ticks");
+            assert!((2..=18).contains(&ticks.len()), "{least} to {most}: {ticks:?}");
+            assert!(ticks.iter().all(|tick| (range.start..=range.end).contains(tick)), "{ticks:?}");
         }
+        assert_eq!(Axis::around(20.0, 361.0).ticks, [20.0, 50.0, 100.0, 200.0, 500.0]);
+        assert!(Axis::around(20.0, 361.0).is_by_factors);
     }
 
     #[test]
