@@ -7,7 +7,7 @@ use crate::strategy::Strategy;
 use obverse_bytecode::{Module, Verified};
 use obverse_sim::{Cell, Sim};
 use obverse_vm::{Direction, Limits, LinkError, Machine, Stop};
-use obverse_workcell::Clock;
+use obverse_workcell::{Clock, Safety};
 use std::collections::BTreeMap;
 
 /// What a machine goes by that learns: nothing, as long as none does.
@@ -19,24 +19,32 @@ pub struct MachineCase<'p> {
     /// A machine at the start of the program, which is copied for each assembly.
     machine: Machine<'p>,
     cell: &'p Cell,
-    person_s: f64,
-    instructions: u64,
+    terms: Terms,
+}
+
+/// What an assembly may take.
+#[derive(Clone, Copy, Debug)]
+pub struct Terms {
+    /// How long a person takes, each time that one has to come, in seconds.
+    pub person_s: f64,
+    /// How often a person releases a stopped arm in one assembly.
+    pub releases: u32,
+    /// How many instructions it may have.
+    pub instructions: u64,
 }
 
 impl<'p> MachineCase<'p> {
-    /// A program in a workcell. An assembly that is left to a person costs so many seconds more,
-    /// and is given up after so many instructions.
+    /// A program in a workcell, assembled on these terms.
     ///
     /// # Errors
     /// What the program needs and the workcell lacks.
     pub fn new(
         program: &'p Verified,
         cell: &'p Cell,
-        person_s: f64,
-        instructions: u64,
+        terms: Terms,
     ) -> Result<Self, Vec<LinkError>> {
         let machine = Machine::new(program, &Sim::new(cell, 0))?;
-        Ok(Self { machine, cell, person_s, instructions })
+        Ok(Self { machine, cell, terms })
     }
 
     /// What was learned, of the text that keeps it.
@@ -85,10 +93,11 @@ impl Stand for MachineStand<'_> {
     fn assemble(&mut self, seed: u64, strategy: Strategy) -> Outcome {
         let mut cell = Sim::new(self.case.cell, seed);
         let mut machine = self.case.machine.clone();
-        let mut incidents = Vec::new();
+        let (mut incidents, mut releases) = (Vec::new(), 0);
         let (ending, why) = loop {
-            let limits =
-                Limits::instructions(self.case.instructions.saturating_sub(machine.executed()));
+            let limits = Limits::instructions(
+                self.case.terms.instructions.saturating_sub(machine.executed()),
+            );
             match machine.run(Direction::Forward, limits, &mut cell, &mut ()) {
                 Stop::Raised { error, pc } => {
                     let module = machine.program().module();
@@ -102,6 +111,10 @@ impl Stand for MachineStand<'_> {
                     break (Ending::Succeeded, None);
                 }
                 Stop::Finished => break (Ending::GivenUp, Some("an error is pending".to_owned())),
+                Stop::Fault { .. } if cell.is_stopped() && releases < self.case.terms.releases => {
+                    releases += 1;
+                    cell.release();
+                }
                 Stop::Fault { fault, .. } => break (Ending::Fault, Some(fault.to_string())),
                 Stop::Trap(trap) => break (Ending::Trap, Some(trap.kind.to_string())),
                 Stop::Budget => break (Ending::Limit, Some("too many instructions".to_owned())),
@@ -111,12 +124,14 @@ impl Stand for MachineStand<'_> {
             }
         };
         let is_left = ending != Ending::Succeeded;
+        let calls = releases + u32::from(is_left);
         Outcome {
             ending,
             why,
             attempts: 0,
             makespan_s: cell.now_s(),
-            person_s: if is_left { self.case.person_s } else { 0.0 },
+            releases,
+            person_s: self.case.terms.person_s * f64::from(calls),
             instructions: machine.executed(),
             incidents,
         }

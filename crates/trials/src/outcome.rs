@@ -48,6 +48,8 @@ pub struct Outcome {
     pub attempts: u32,
     /// How long it took by the workcell's clock, in seconds.
     pub makespan_s: f64,
+    /// How often a person gave the fresh command without which nothing moves after a stop.
+    pub releases: u32,
     /// How long a person was busy with it on top of that, in seconds.
     pub person_s: f64,
     /// How many instructions were run or reversed.
@@ -63,10 +65,10 @@ impl Outcome {
         self.makespan_s + self.person_s
     }
 
-    /// Whether a person has to come to set it right.
+    /// Whether a person had to come, to set it right or to release the arm.
     #[must_use]
-    pub fn is_left_to_a_person(&self) -> bool {
-        self.ending != Ending::Succeeded
+    pub fn takes_a_person(&self) -> bool {
+        self.ending != Ending::Succeeded || self.releases > 0
     }
 }
 

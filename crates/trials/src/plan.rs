@@ -29,8 +29,10 @@ pub struct Plan {
     pub seed: u64,
     /// How many assemblies are made by each strategy.
     pub runs: u64,
-    /// How long a person takes for an assembly that is left to one, in seconds.
+    /// How long a person takes, each time that one has to come, in seconds.
     pub person_s: f64,
+    /// How often a person releases a stopped arm in one assembly.
+    pub releases: u32,
     /// After how many instructions an assembly is given up.
     pub instructions: u64,
 }
@@ -78,6 +80,7 @@ impl Plan {
             ("list of strategies", list(self), list(other)),
             ("seed", self.seed.to_string(), other.seed.to_string()),
             ("number of runs", self.runs.to_string(), other.runs.to_string()),
+            ("number of releases", self.releases.to_string(), other.releases.to_string()),
             ("price of a person", self.person_s.to_string(), other.person_s.to_string()),
             (
                 "limit of instructions",

@@ -23,7 +23,7 @@ pub struct Tally {
     pub runs: u64,
     /// In how many of them an error came up.
     pub in_error: u64,
-    /// How many were left to a person.
+    /// For how many a person had to come.
     pub to_a_person: u64,
     /// How often something was tried again.
     pub attempts: u64,
@@ -130,7 +130,7 @@ fn tally<'r>(strategy: Strategy, records: impl Iterator<Item = &'r Record>) -> T
     for Record { outcome, .. } in records {
         tally.runs += 1;
         tally.in_error += u64::from(!outcome.incidents.is_empty());
-        tally.to_a_person += u64::from(outcome.is_left_to_a_person());
+        tally.to_a_person += u64::from(outcome.takes_a_person());
         tally.attempts += u64::from(outcome.attempts);
         tally.makespans_s.push(outcome.total_s());
         for incident in &outcome.incidents {

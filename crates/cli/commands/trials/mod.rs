@@ -8,7 +8,7 @@ use crate::load::{self, Program};
 use crate::problem::Problem;
 use crate::{Outcome, files, lacking, show, write};
 use journal::Journal;
-use obverse_trials::machine::Memory;
+use obverse_trials::machine::{Memory, Terms};
 use obverse_trials::{MachineCase, Part, Plan, Shard, Strategy, Summary};
 use obverse_trials::{plots, shard, statistics, table};
 use progress::Progress;
@@ -67,9 +67,12 @@ pub(crate) struct Arguments {
     /// From how many assemblies, of seeds of their own, the strategy `learned` learns beforehand.
     #[arg(long, default_value_t = 1024, value_name = "N")]
     learn: u64,
-    /// How long a person takes for an assembly that is left to one, in seconds.
+    /// How long a person takes, each time that one has to come, in seconds.
     #[arg(long, default_value_t = 300.0, value_name = "S")]
     person: f64,
+    /// How often a person releases a stopped arm in one assembly: the fresh command it waits for.
+    #[arg(long, default_value_t = 0, value_name = "N")]
+    release: u32,
     /// Give an assembly up after about so many instructions.
     #[arg(long, default_value_t = 1_000_000, value_name = "N")]
     limit: u64,
@@ -104,7 +107,12 @@ fn campaign(arguments: &Arguments, path: &Path) -> std::result::Result<Part, Pro
     let jobs = check(arguments)?;
     let program = load::program(path)?;
     let (cell, file) = load::cell(&program, arguments.cell.as_deref())?;
-    let case = MachineCase::new(&program.verified, &cell, arguments.person, arguments.limit)
+    let terms = Terms {
+        person_s: arguments.person,
+        releases: arguments.release,
+        instructions: arguments.limit,
+    };
+    let case = MachineCase::new(&program.verified, &cell, terms)
         .map_err(|errors| Problem::several(lacking::messages(&program, &file, &errors)))?;
     if let Some(strategy) = strategies.iter().find(|strategy| !case.knows(**strategy)) {
         return Err(Problem::new(format!("programs cannot be run by the strategy {strategy} yet")));
@@ -195,6 +203,7 @@ fn plan(
         seed: arguments.seed,
         runs: arguments.runs,
         person_s: arguments.person,
+        releases: arguments.release,
         instructions: arguments.limit,
     })
 }

@@ -59,6 +59,7 @@ impl Stand for ToyStand<'_> {
             why: is_left.then(|| "attempts".to_owned()),
             attempts: tried.len() as u32,
             makespan_s: 20.0 + (seed % 1000) as f64 / 300.0 + 3.0 * tried.len() as f64,
+            releases: 0,
             person_s: if is_left { PERSON_S } else { 0.0 },
             instructions: seed % 97,
             incidents: if is_jammed { vec![incident] } else { Vec::new() },
@@ -77,6 +78,7 @@ pub(crate) fn plan(strategies: &str, runs: u64) -> Plan {
         seed: 5,
         runs,
         person_s: PERSON_S,
+        releases: 0,
         instructions: 1000,
     }
 }
