@@ -1,8 +1,8 @@
 //! The file of a shard: lines of JSON, of which the first says which campaign it belongs to, and
 //! the last that it is whole. Between them there is a line for each run and strategy.
 //!
-//! What stands in a file follows from the plan and the shard alone. So the files of all shards, put
-//! together, give the bytes of the file of the whole, and a file that was begun can be gone on with.
+//! What stands in a file follows from the plan and the shard alone. So the files of all shards,
+//! put together, give the bytes of the file of the whole, and what was begun can be gone on with.
 //! Knows bytes; how they come to a disk is known elsewhere.
 
 use crate::outcome::Record;
