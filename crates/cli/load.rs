@@ -150,9 +150,16 @@ pub(crate) fn workcell(
     named: Option<&Path>,
     seed: u64,
 ) -> Result<(Sim, Workcell), Problem> {
+    let (cell, file) = cell(program, named)?;
+    Ok((Sim::new(&cell, seed), file))
+}
+
+/// The description of the workcell that a program runs in, and its file; a bare arm where none is
+/// named.
+pub(crate) fn cell(program: &Program, named: Option<&Path>) -> Result<(Cell, Workcell), Problem> {
     let Some(path) = workcell_path(program, named) else {
         let bare = Workcell { name: "a bare arm".to_owned(), text: None };
-        return Ok((Sim::new(&Cell::bare(), seed), bare));
+        return Ok((Cell::bare(), bare));
     };
     let raw = bytes(&path).map_err(|problem| match named {
         Some(_) => problem,
@@ -165,7 +172,7 @@ pub(crate) fn workcell(
         Problem::several(vec![Message::of_file(&path, error.message).at(Some(place))])
     })?;
     let file = Workcell { name: path.display().to_string(), text: Some(text) };
-    Ok((Sim::new(&cell, seed), file))
+    Ok((cell, file))
 }
 
 /// What is wrong with a workcell file, and where the program names it.
