@@ -99,7 +99,7 @@ impl Reports {
     }
 
     /// Whether there may have been warnings that were not kept.
-    pub(crate) fn is_full(&self) -> bool {
+    pub(crate) fn drops_warnings(&self) -> bool {
         self.warnings.len() >= MAX_KEPT
     }
 

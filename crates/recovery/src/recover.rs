@@ -58,10 +58,13 @@ pub struct Site<'s, 'p, C> {
     pub changes: Vec<Option<Alteration>>,
 }
 
-/// Who knows what will come of going back.
+/// Who sees the world as it is, and knows what will come of going back.
 pub trait Foresight<C> {
     /// How many actions it is best to go back; none if it will not help.
     fn depth(&mut self, site: &Site<'_, '_, C>) -> Option<usize>;
+
+    /// An error is due for the first time, by whatever strategy it will be met.
+    fn on_error(&mut self, _: &Incident, _: &C) {}
 }
 
 /// Run a program forward until it ends, recovering from its errors.
@@ -236,6 +239,11 @@ impl<'p, C: Workcell> Run<'_, 'p, '_, C> {
             attempts: Vec::new(),
             outcome: None,
         });
+        if let (Some(foresight), Some(incident)) =
+            (self.recovery.foresight.as_mut(), self.open.last())
+        {
+            foresight.on_error(incident, self.cell);
+        }
         self.open.len() - 1
     }
 

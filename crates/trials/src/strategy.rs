@@ -43,6 +43,24 @@ impl Strategy {
         Self::Oracle,
     ];
 
+    /// How the driver of machines knows it.
+    #[must_use]
+    pub fn answer(self) -> obverse_recovery::Strategy {
+        use obverse_recovery::Strategy as Answer;
+        match self {
+            Self::Declared => Answer::Declared,
+            Self::Stop => Answer::Stop,
+            Self::Retry => Answer::Retry { times: 3 },
+            Self::BackUp => Answer::BackUp { distance_m: 0.30, times: 6 },
+            Self::Restart => Answer::Restart { times: 3 },
+            Self::Explicit => Answer::Explicit,
+            Self::Fixed(depth) => Answer::Fixed { actions: depth as usize },
+            Self::Escalating => Answer::Escalating,
+            Self::Learned => Answer::Learned,
+            Self::Oracle => Answer::Oracle,
+        }
+    }
+
     /// The strategies of a list such as `stop,fixed:2,learned`; `all` stands for [`Self::ALL`].
     ///
     /// # Errors

@@ -8,7 +8,8 @@ use crate::load::{self, Program};
 use crate::problem::Problem;
 use crate::{Outcome, files, lacking, show, write};
 use journal::Journal;
-use obverse_trials::machine::{Memory, Terms};
+use obverse_recovery::Memory;
+use obverse_trials::machine::Terms;
 use obverse_trials::{MachineCase, Part, Plan, Shard, Strategy, Summary};
 use obverse_trials::{plots, shard, statistics, table};
 use progress::Progress;
@@ -114,9 +115,6 @@ fn campaign(arguments: &Arguments, path: &Path) -> std::result::Result<Part, Pro
     };
     let case = MachineCase::new(&program.verified, &cell, terms)
         .map_err(|errors| Problem::several(lacking::messages(&program, &file, &errors)))?;
-    if let Some(strategy) = strategies.iter().find(|strategy| !case.knows(**strategy)) {
-        return Err(Problem::new(format!("programs cannot be run by the strategy {strategy} yet")));
-    }
     if let Some(out) = &arguments.out {
         let cell = load::workcell_path(&program, arguments.cell.as_deref());
         let inputs: Vec<PathBuf> = program.files().into_iter().chain(cell).collect();
@@ -126,7 +124,7 @@ fn campaign(arguments: &Arguments, path: &Path) -> std::result::Result<Part, Pro
     let memory = match plan.strategies.contains(&Strategy::Learned) {
         true => {
             let memory = learned(arguments, &case, jobs)?;
-            plan.memory_digest = Some(digest(case.text_of(&memory).as_bytes()));
+            plan.memory_digest = Some(digest(memory.to_text().as_bytes()));
             memory
         }
         false => Memory::default(),
@@ -222,7 +220,7 @@ fn learned(
         let bytes = load::bytes(path)?;
         let text = String::from_utf8(bytes)
             .map_err(|error| Problem::of_file(path, format!("not text: {error}")))?;
-        return case.memory_of(&text).map_err(|error| Problem::of_file(path, error));
+        return Memory::from_text(&text).map_err(|error| Problem::of_file(path, error));
     }
     let mut progress = Progress::new("learning", 0, arguments.learn);
     let mut more = |_| progress.one_more();
@@ -230,7 +228,7 @@ fn learned(
     let memory =
         obverse_trials::learn(case, blank, arguments.seed, arguments.learn, jobs, &mut more);
     if let Some(path) = &arguments.memory {
-        write::file(path, case.text_of(&memory).as_bytes())?;
+        write::file(path, memory.to_text().as_bytes())?;
     }
     Ok(memory)
 }

@@ -44,7 +44,7 @@ impl<'m> Checked<'m> {
             // What a program allows is warned about here, too.
             let mut reports = Reports::new(true, Allows::default());
             forks::check(&tree, &Effects::of(&tree), &mut reports);
-            checked.may_be_more = reports.is_full();
+            checked.may_be_more = reports.drops_warnings();
             for found in reports.into_diagnostics() {
                 if found.code == Code::ReadsOtherBranch
                     && let Some(fork) = found.labels.last()
