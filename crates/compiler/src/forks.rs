@@ -229,6 +229,7 @@ impl Fork<'_> {
         let function = self.program.function(function);
         match function.kind {
             FunctionKind::Replacement => "this block".to_owned(),
+            FunctionKind::Cleanup => "the cleanup".to_owned(),
             _ => format!("`{}`", function.name),
         }
     }

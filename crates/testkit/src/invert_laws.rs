@@ -87,6 +87,7 @@ fn restricted(source: &str, other: &str, sequence: &str) -> String {
 fn name_of<'s>(item: &Item<'s>) -> Option<&'s str> {
     match item {
         Item::Cell(_) | Item::Import(_) | Item::Signal(_) | Item::Allow(_) => None,
+        Item::Cleanup(_) => Some("cleanup"),
         Item::Io(io) => Some(io.name.value),
         Item::Joints(joints) => Some(joints.name.value),
         Item::ItemDeclaration(item) => Some(item.name.value),

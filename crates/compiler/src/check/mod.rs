@@ -11,6 +11,7 @@ mod fork;
 mod frame;
 mod function;
 mod guarded;
+mod incident;
 mod motion;
 mod names;
 mod operators;
@@ -20,6 +21,7 @@ mod signals;
 mod statement;
 mod unused;
 
+use crate::faults::NamedFault;
 use crate::keyframes::KeyframeFlow;
 use crate::report::Reports;
 use crate::tree::{Expression, Function, MAX_SLOTS};
@@ -28,7 +30,7 @@ use frame::FrameScope;
 use names::{Found, Meaning, Names};
 use obverse_bytecode::Module;
 use obverse_isa::{FunctionId, LocalId, Type};
-use obverse_syntax::ast::{Name, SignalKind};
+use obverse_syntax::ast::{FaultWord, Name, SignalKind};
 use obverse_syntax::codes::Code;
 use obverse_syntax::diagnostic::Diagnostic;
 use obverse_syntax::sources::Sources;
@@ -70,6 +72,9 @@ struct Checker<'s> {
     first_values: Vec<Expression>,
     wanted_checkpoints: Vec<Name<'s>>,
     set_checkpoints: BTreeSet<&'s str>,
+    /// Where each fault is named first.
+    faults: HashMap<FaultWord, Span>,
+    named_faults: Vec<NamedFault>,
     keyframes: KeyframeFlow,
     frame: FrameScope,
     /// The kinds of thing there are too many of, so that each is reported once.

@@ -92,8 +92,8 @@ fn recover_and_go_on() {
         "
         enter
         error.raise e
-        call fix
         error.clear e
+        call fix
         push.const 1.0
         wait
         return
@@ -123,8 +123,8 @@ fn recover_and_do_the_action_again() {
         push.raised e
         jump.unless +10
         jump.unless.local.lt.imm $rounds 3 +5
-        call fix
         error.clear e
+        call fix
         add.local.imm $rounds 1
         jump -8
         land -5
@@ -164,8 +164,8 @@ fn recover_and_do_the_sequence_again() {
         push.raised e
         jump.unless +9
         jump.unless.local.lt.imm $rounds 3 +4
-        call fix
         error.clear e
+        call fix
         jump +9
         land -4
         push.bool high
@@ -205,13 +205,16 @@ fn recover_and_stop() {
         enter
         sense.holding $0
         push.local $0
-        jump.unless +6
+        jump.unless +9
         error.raise e
+        error.clear e
         call fix
+        error.clear e
+        error.raise e
         push.bool high
         store.global $leaving
         jump +4
-        land -6
+        land -9
         push.const 1.0
         wait
         join -4
@@ -270,15 +273,18 @@ fn the_handler_of_a_restart_leaves_the_error_pending() {
         enter
         sense.holding $0
         push.local $0
-        jump.unless +8
+        jump.unless +11
         error.raise e
+        error.clear e
         call fix
+        error.clear e
+        error.raise e
         push.bool high
         store.global $restart
         push.bool high
         store.global $leaving
         jump +2
-        land -8
+        land -11
         join -2
         return
         ",
@@ -300,8 +306,8 @@ fn reversal_given_up_calls_otherwise() {
         "
         enter
         error.raise e
-        call fix
         error.clear e
+        call fix
         push.const 1.0
         wait
         return
@@ -331,8 +337,8 @@ fn an_error_for_after_the_sequence_is_due_in_its_caller() {
         push.raised e
         jump.unless +10
         jump.unless.local.lt.imm $rounds 3 +5
-        call fix
         error.clear e
+        call fix
         add.local.imm $rounds 1
         jump -8
         land -5
@@ -388,8 +394,8 @@ fn what_is_due_after_main_is_due_in_the_start() {
         push.raised e
         jump.unless +8
         jump.unless.local.lt.imm $rounds 3 +5
-        call fix
         error.clear e
+        call fix
         add.local.imm $rounds 1
         jump -8
         land -5
@@ -453,29 +459,31 @@ fn a_recovery_does_not_begin_within_another() {
         "fix",
         "
         enter
-        join +22
+        join +24
         error.raise e
         push.global $recovering
-        jump.if +11
-        jump.unless.local.lt.imm $rounds 3 +11
+        jump.if +14
+        jump.unless.local.lt.imm $rounds 3 +14
+        error.clear e
         push.bool high
         store.global $recovering
         call fix
         push.bool low
         store.global $recovering
         push.global $leaving
-        jump.if +5
+        jump.if +2
+        jump +9
+        land -2
         error.clear e
-        jump +7
-        land -11
-        join -11
-        join -5
+        error.raise e
+        join -14
+        join -14
         push.bool high
         store.global $leaving
         jump +4
-        land -7
+        land -9
         add.local.imm $rounds 1
-        jump -22
+        jump -24
         land -4
         return
         ",
@@ -505,8 +513,8 @@ fn a_block_with_a_reverse_is_left_by_its_end() {
         jump.unless +14
         error.raise e
         jump.unless.local.lt.imm $rounds 3 +6
-        call fix
         error.clear e
+        call fix
         push.int 2
         store.local $way
         jump +10
