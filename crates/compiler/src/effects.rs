@@ -23,6 +23,8 @@ pub(crate) struct Effects {
     functions: Vec<Effect>,
     /// By function: whether it may be run while an error is being recovered from.
     in_recovery: Vec<bool>,
+    /// By error: whether it may be raised while one is being recovered from.
+    raised_in_recovery: Vec<bool>,
 }
 
 /// What is known of a function.
@@ -83,6 +85,7 @@ impl Effects {
             faults: Faults::of(errors),
             functions: vec![Effect::default(); program.functions.len() + 1],
             in_recovery: Vec::new(),
+            raised_in_recovery: vec![false; errors.len()],
         };
         let for_caller: Vec<bool> = errors.iter().map(is_for_caller).collect();
         let is_part = |function: &Function| {
@@ -98,6 +101,12 @@ impl Effects {
         }
         effects.spread();
         effects.in_recovery = effects.reached_from_recoveries();
+        for (effect, _) in effects.functions.iter().zip(&effects.in_recovery).filter(|(_, is)| **is)
+        {
+            for error in effect.own.iter().chain(&effect.for_caller) {
+                effects.raised_in_recovery[error.index()] = true;
+            }
+        }
         effects
     }
 
@@ -272,6 +281,11 @@ impl Effects {
     /// What is done about an error.
     pub(crate) fn response(&self, error: ErrorId) -> Response {
         self.responses[error.index()]
+    }
+
+    /// Whether an error may be raised while one is being recovered from.
+    pub(crate) fn is_raised_in_recovery(&self, error: ErrorId) -> bool {
+        self.raised_in_recovery[error.index()]
     }
 
     /// The errors that a call of a function leaves to be responded to.

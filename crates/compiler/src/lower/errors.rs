@@ -119,8 +119,14 @@ impl Lower<'_> {
         site: &mut Site,
     ) {
         let limits = self.limits(error, then, site);
-        let failed = using.map_or(Vec::new(), |function| self.recover_using(error, function));
-        if using.is_none() && !matches!(then, Continuation::Program | Continuation::Stop) {
+        // If it may be raised anew by its recovery, it is not pending meanwhile, so that this is
+        // known.
+        let is_set_aside = using.is_some() && self.effects.is_raised_in_recovery(error);
+        if is_set_aside {
+            self.push(Instr::ErrorClear { error });
+        }
+        let failed = using.map_or(Vec::new(), |function| self.recover_using(function));
+        if !is_set_aside && !matches!(then, Continuation::Program | Continuation::Stop) {
             self.push(Instr::ErrorClear { error });
         }
         match then {
@@ -138,12 +144,12 @@ impl Lower<'_> {
             }
             Continuation::Program => {
                 // The error is pending until the start has seen that there is a round left.
-                self.raise_again(error, using);
+                self.raise_again(error, is_set_aside);
                 self.give_up(Way::Restart);
             }
             Continuation::Stop => {
                 self.join_all(failed);
-                self.raise_again(error, using);
+                self.raise_again(error, is_set_aside);
                 self.join_all(limits);
                 return self.give_up(Way::Out);
             }
@@ -154,7 +160,7 @@ impl Lower<'_> {
         let over = self.frame.is_reached.then(|| self.jump());
         if !failed.is_empty() {
             self.join_all(failed);
-            self.raise_again(error, using);
+            self.raise_again(error, is_set_aside);
         }
         self.join_all(limits);
         self.give_up(Way::Out);
@@ -180,11 +186,9 @@ impl Lower<'_> {
         given_up
     }
 
-    /// Run the sequence of a recovery; the jumps where an error in it gives the recovery up. What
-    /// is recovered from is not pending meanwhile, so that it is known if it is raised anew.
-    fn recover_using(&mut self, error: ErrorId, function: FunctionId) -> Vec<Mark> {
+    /// Run the sequence of a recovery; the jumps where an error in it gives the recovery up.
+    fn recover_using(&mut self, function: FunctionId) -> Vec<Mark> {
         let mut failed = Vec::new();
-        self.push(Instr::ErrorClear { error });
         if let Some(recovering) = self.globals.recovering {
             self.set_flag(recovering, true);
         }
@@ -208,8 +212,8 @@ impl Lower<'_> {
     }
 
     /// After a recovery: what it was from is pending again, and once.
-    fn raise_again(&mut self, error: ErrorId, using: Option<FunctionId>) {
-        if using.is_some() {
+    fn raise_again(&mut self, error: ErrorId, is_set_aside: bool) {
+        if is_set_aside {
             self.pend(error);
         }
     }

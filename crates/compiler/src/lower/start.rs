@@ -72,8 +72,11 @@ impl<'p> Lower<'p> {
         for error in self.effects.raised_within(function) {
             let local = self.hidden("pending", Type::Bool);
             self.push(Instr::PushRaised { error });
+            let is_not = self.code.jump(|target| Instr::JumpUnless { prefix: PREFIX, target });
+            self.push_bool(true);
             self.push(Instr::StoreLocal { prefix: PREFIX, local });
             self.push(Instr::ErrorClear { error });
+            self.join_one(is_not);
             pending.push((error, local));
         }
         self.push(Instr::Call { prefix: PREFIX, function });

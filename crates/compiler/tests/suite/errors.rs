@@ -92,8 +92,8 @@ fn recover_and_go_on() {
         "
         enter
         error.raise e
-        error.clear e
         call fix
+        error.clear e
         push.const 1.0
         wait
         return
@@ -123,8 +123,8 @@ fn recover_and_do_the_action_again() {
         push.raised e
         jump.unless +10
         jump.unless.local.lt.imm $rounds 3 +5
-        error.clear e
         call fix
+        error.clear e
         add.local.imm $rounds 1
         jump -8
         land -5
@@ -164,8 +164,8 @@ fn recover_and_do_the_sequence_again() {
         push.raised e
         jump.unless +9
         jump.unless.local.lt.imm $rounds 3 +4
-        error.clear e
         call fix
+        error.clear e
         jump +9
         land -4
         push.bool high
@@ -205,16 +205,13 @@ fn recover_and_stop() {
         enter
         sense.holding $0
         push.local $0
-        jump.unless +9
+        jump.unless +6
         error.raise e
-        error.clear e
         call fix
-        error.clear e
-        error.raise e
         push.bool high
         store.global $leaving
         jump +4
-        land -9
+        land -6
         push.const 1.0
         wait
         join -4
@@ -273,18 +270,15 @@ fn the_handler_of_a_restart_leaves_the_error_pending() {
         enter
         sense.holding $0
         push.local $0
-        jump.unless +11
+        jump.unless +8
         error.raise e
-        error.clear e
         call fix
-        error.clear e
-        error.raise e
         push.bool high
         store.global $restart
         push.bool high
         store.global $leaving
         jump +2
-        land -11
+        land -8
         join -2
         return
         ",
@@ -306,8 +300,8 @@ fn reversal_given_up_calls_otherwise() {
         "
         enter
         error.raise e
-        error.clear e
         call fix
+        error.clear e
         push.const 1.0
         wait
         return
@@ -337,8 +331,8 @@ fn an_error_for_after_the_sequence_is_due_in_its_caller() {
         push.raised e
         jump.unless +10
         jump.unless.local.lt.imm $rounds 3 +5
-        error.clear e
         call fix
+        error.clear e
         add.local.imm $rounds 1
         jump -8
         land -5
@@ -367,7 +361,10 @@ fn the_sequence_goes_on_meanwhile() {
         "inner",
         "
         enter
+        push.raised e
+        jump.if +2
         error.raise e
+        join -2
         push.const 1.0
         wait
         return
@@ -394,8 +391,8 @@ fn what_is_due_after_main_is_due_in_the_start() {
         push.raised e
         jump.unless +8
         jump.unless.local.lt.imm $rounds 3 +5
-        error.clear e
         call fix
+        error.clear e
         add.local.imm $rounds 1
         jump -8
         land -5
@@ -513,8 +510,8 @@ fn a_block_with_a_reverse_is_left_by_its_end() {
         jump.unless +14
         error.raise e
         jump.unless.local.lt.imm $rounds 3 +6
-        error.clear e
         call fix
+        error.clear e
         push.int 2
         store.local $way
         jump +10

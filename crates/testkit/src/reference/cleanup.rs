@@ -66,6 +66,23 @@ impl<'p> Interpreter<'p, '_> {
         raised
     }
 
+    /// The errors that may be raised while one is being recovered from.
+    pub(super) fn raised_in_recoveries(&self) -> Names<'p> {
+        let mut raised = Names::new();
+        let recoveries = self.names.errors.values().filter_map(|error| match response(error) {
+            Response::Recover { using, .. } => using,
+            Response::Ignore | Response::Stop => None,
+        });
+        let mut called: Vec<&'p str> = recoveries.collect();
+        let mut seen = Names::new();
+        while let Some(name) = called.pop() {
+            if let Some(sequence) = self.names.sequences.get(name).filter(|_| seen.insert(name)) {
+                self.raised_by(&sequence.body, &mut raised, &mut called);
+            }
+        }
+        raised
+    }
+
     /// The errors that the statements of a block raise but for its calls, and what it calls.
     pub(super) fn raised_by(
         &self,

@@ -143,19 +143,21 @@ impl<'p> Interpreter<'p, '_> {
         if self.is_recovering || rounds >= most_rounds(error) {
             return Ok(Some(Flow::Leave));
         }
-        if using.is_some() {
+        let is_set_aside =
+            using.is_some() && self.raised_in_recoveries().contains(error.name.value);
+        if is_set_aside {
             self.clear(error.name.value);
         }
         let has_recovered = self.recover(using)?;
         let stays = !has_recovered || matches!(then, Continuation::Program | Continuation::Stop);
-        if using.is_some() && stays {
+        if is_set_aside && stays {
             self.clear(error.name.value);
             self.raised.push(error.name.value);
         }
         if !has_recovered {
             return Ok(Some(Flow::Leave));
         }
-        Ok(self.go_on(error, then, using.is_none(), site))
+        Ok(self.go_on(error, then, !is_set_aside, site))
     }
 
     /// How the program goes on after a recovery.
