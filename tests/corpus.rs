@@ -3,17 +3,19 @@
 //!
 //! `//~ E0201 E0101` at the end of a line names the diagnostics that begin on it, each as often as
 //! it comes; `//~^ E0201` those of the line above, `//~^^` of the one above that. To add a program,
-//! add a file; what it imports stands in a folder of its name. What is meant is never written by a
-//! switch: goldens are for how it looks.
+//! add a file; what it imports stands in a folder of its name. A file `inverse_…` says also what of
+//! its `main` has no inverse. What is meant is never written by a switch: goldens are for how it
+//! looks.
 //!
 //! A change that a diagnostic suggests is made: what it was suggested for is then gone.
 
 use libtest_mimic::{Arguments, Failed, Trial};
-use obverse_compiler::Compiled;
+use obverse_compiler::{Compiled, MAX_IMPORT_DEPTH, MAX_IMPORTED, NoInverse, invert_files};
+use obverse_syntax::MAX_SOURCE_BYTES;
 use obverse_syntax::codes::Code;
 use obverse_syntax::diagnostic::Diagnostic;
 use obverse_syntax::source::LineIndex;
-use obverse_syntax::sources::Place;
+use obverse_syntax::sources::{Place, Sources};
 use obverse_testkit::files::Folder;
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
@@ -21,14 +23,17 @@ use std::process::ExitCode;
 
 const FOLDER: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/corpus");
 
+/// What the names of files begin with whose `main` is inverted as well.
+const INVERTED: &str = "inverse_";
+
 /// How many programs there are at the least, and how many of them mix mistakes in twenty lines and
 /// more.
 const LEAST: usize = 150;
 const LEAST_MIXED: usize = 75;
 
-/// Codes that no program of a sensible size causes, and the one of a program without mistakes: it
-/// is inversion that fails.
-const NOT_SHOWN: [Code; 3] = [Code::SourceTooLarge, Code::TooManyImports, Code::NotInvertible];
+/// Codes that no file shows, since it would be too large or one of too many. The programs that
+/// have them are made by a test of their own, `too_large_to_be_kept`.
+const NOT_KEPT: [Code; 2] = [Code::SourceTooLarge, Code::TooManyImports];
 
 fn main() -> ExitCode {
     let arguments = Arguments::from_args();
@@ -39,6 +44,7 @@ fn main() -> ExitCode {
             Trial::test(name, move || check(&file))
         })
         .collect();
+    trials.push(Trial::test("too large to be kept", too_large_to_be_kept));
     trials.push(Trial::test("every code occurs", every_code_occurs));
     trials.push(Trial::test("there are enough", there_are_enough));
     libtest_mimic::run(&arguments, trials).exit_code()
@@ -102,19 +108,37 @@ fn check(file: &Path) -> Result<(), Failed> {
     }
     let mut folder = Folder::read(Path::new(FOLDER));
     let compiled = compile(&mut folder, &name);
-    let found = compiled.diagnostics.iter().map(|one| {
-        let (name, position) = compiled.sources.position(one.primary.span);
-        (name.to_owned(), position.line as usize, one.code.to_string(), one.message.clone())
-    });
-    compare(&said, &found.collect::<Vec<_>>())?;
+    let mut found = found_in(&compiled.sources, &compiled.diagnostics);
+    if name.starts_with(INVERTED) {
+        found.extend(not_inverted(&mut folder, &name));
+    }
+    compare(&said, &found)?;
     let mut suggested = compiled.diagnostics.iter();
     suggested.try_for_each(|one| check_suggestion(&folder, &compiled, &name, one))
 }
 
-fn compare(said: &Placed, found: &[(String, usize, String, String)]) -> Result<(), Failed> {
-    let place = |(file, line, code, _): &(String, usize, String, String)| {
-        (file.clone(), *line, code.clone())
-    };
+/// What is said of the inverse of a program's `main`.
+fn not_inverted(folder: &mut Folder, name: &str) -> Vec<Found> {
+    let text = folder.0.get(name).cloned().unwrap_or_default();
+    match invert_files(name, &text, "main", folder) {
+        (sources, Err(NoInverse::Diagnosed(diagnostics))) => found_in(&sources, &diagnostics),
+        (_, Ok(_) | Err(NoInverse::UnknownSequence(_))) => Vec::new(),
+    }
+}
+
+/// File, line, code and message of a diagnostic.
+type Found = (String, usize, String, String);
+
+fn found_in(sources: &Sources, diagnostics: &[Diagnostic]) -> Vec<Found> {
+    let found = diagnostics.iter().map(|one| {
+        let (name, position) = sources.position(one.primary.span);
+        (name.to_owned(), position.line as usize, one.code.to_string(), one.message.clone())
+    });
+    found.collect()
+}
+
+fn compare(said: &Placed, found: &[Found]) -> Result<(), Failed> {
+    let place = |(file, line, code, _): &Found| (file.clone(), *line, code.clone());
     let mut placed: Placed = found.iter().map(place).collect();
     placed.sort();
     if !said.is_empty() && placed == *said {
@@ -155,12 +179,48 @@ fn check_suggestion(
     }
 }
 
+/// A text of more than there may be, files that import one another in too long a row, and too many
+/// files.
+fn too_large_to_be_kept() -> Result<(), Failed> {
+    let source = " ".repeat(MAX_SOURCE_BYTES + 1);
+    let codes = |diagnostics: &[Diagnostic]| -> Vec<Code> {
+        diagnostics.iter().map(|one| one.code).collect()
+    };
+    let found = codes(&obverse_syntax::parse(&source).diagnostics);
+    if found != [Code::SourceTooLarge] {
+        return Err(format!("of a text that is too large: {found:?}").into());
+    }
+    let mut row = Folder::default();
+    let last = MAX_IMPORT_DEPTH + 1;
+    for index in 0..last {
+        row.0.insert(format!("{index}.obv"), format!("import \"{}.obv\"\n", index + 1));
+    }
+    row.0.insert(format!("{last}.obv"), "sequence main { wait 1 s }\n".to_owned());
+    refused_once(&mut row, "0.obv", (&format!("{}.obv", last - 1), 1))?;
+    let mut wide = Folder::default();
+    let imports = (0..=MAX_IMPORTED).map(|index| format!("import \"poses/{index}.obv\"\n"));
+    let imports: String = imports.collect();
+    wide.0.insert("wide.obv".to_owned(), imports + "sequence main { wait 1 s }\n");
+    for index in 0..=MAX_IMPORTED {
+        let text = format!("joints _p{index} = [0, 0, 0, 0, 0, 0] deg\n");
+        wide.0.insert(format!("poses/{index}.obv"), text);
+    }
+    refused_once(&mut wide, "wide.obv", ("wide.obv", MAX_IMPORTED + 1))
+}
+
+/// One file too many is said once, where it is imported.
+fn refused_once(folder: &mut Folder, name: &str, at: (&str, usize)) -> Result<(), Failed> {
+    let compiled = compile(folder, name);
+    let said = vec![(at.0.to_owned(), at.1, Code::TooManyImports.to_string())];
+    compare(&said, &found_in(&compiled.sources, &compiled.diagnostics))
+}
+
 fn every_code_occurs() -> Result<(), Failed> {
     let mut shown = BTreeSet::new();
     for file in files() {
         shown.extend(said(&file)?.into_iter().map(|(.., code)| code));
     }
-    let is_missing = |code: &&Code| !NOT_SHOWN.contains(code) && !shown.contains(code.as_str());
+    let is_missing = |code: &&Code| !NOT_KEPT.contains(code) && !shown.contains(code.as_str());
     let missing: Vec<_> = Code::ALL.iter().filter(is_missing).collect();
     match missing.is_empty() {
         true => Ok(()),

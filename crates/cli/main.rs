@@ -11,6 +11,7 @@ mod lacking;
 mod load;
 mod moves;
 mod problem;
+mod recovering;
 mod report;
 mod show;
 mod story;

@@ -15,8 +15,9 @@ pub(crate) fn tell(module: &Module, report: &Report) {
     if report.moves.is_empty() {
         return;
     }
-    write::line(&format!("\n  line  {:<TEXT_COLUMNS$}  grade", "move"));
-    report.moves.iter().for_each(|found| row(module, found));
+    let width = line_columns(module, report);
+    write::line(&format!("\n{:>width$}  {:<TEXT_COLUMNS$}  grade", "line", "move"));
+    report.moves.iter().for_each(|found| row(module, found, width));
     write::line("");
     write::line(&counts(report));
     if !report.is_complete {
@@ -38,25 +39,31 @@ const GIVEN_UP: &str = "\
 the check was given up: there are too many ways through the program, or too many motions, to look
 at all of them; that a move looks fine says nothing";
 
-fn row(module: &Module, found: &MoveReport) {
+/// How wide the column of lines is.
+fn line_columns(module: &Module, report: &Report) -> usize {
+    let lines = report.moves.iter().filter_map(|found| line_of(module, found.pc));
+    lines.map(|line| line.chars().count()).max().unwrap_or(0).clamp(6, 40)
+}
+
+fn row(module: &Module, found: &MoveReport, width: usize) {
     let line = line_of(module, found.pc).unwrap_or_default();
     let text = story::text_of(module, found.pc, module.code[found.pc as usize]);
     let (forward, reverse) = (found.forward.as_ref(), found.reverse.as_ref());
     let Some(first) = forward.or(reverse) else {
         let never = found.unseen;
         let grade = format!("{} ({})", never.grade().words(), never.code());
-        write::line(&format!("{line:>6}  {text:<TEXT_COLUMNS$}  {grade}"));
-        return write::line(&format!("{:>10}{}", "", never.title()));
+        write::line(&format!("{line:>width$}  {text:<TEXT_COLUMNS$}  {grade}"));
+        return write::line(&format!("{:>width$}    {}", "", never.title()));
     };
     let alone = if forward.is_none() { ", in reverse alone" } else { "" };
-    write::line(&format!("{line:>6}  {text:<TEXT_COLUMNS$}  {}{alone}", grade(first)));
-    more(module, first);
+    write::line(&format!("{line:>width$}  {text:<TEXT_COLUMNS$}  {}{alone}", grade(first)));
+    more(module, first, width);
     if let (Some(there), Some(back)) = (forward, reverse)
         && differs(there.verdict.grade(), back.verdict.grade())
     {
-        let label = format!("{:<width$}", "  in reverse", width = TEXT_COLUMNS);
-        write::line(&format!("{:>6}  {label}  {}", "", grade(back)));
-        more(module, back);
+        let label = format!("{:<TEXT_COLUMNS$}", "  in reverse");
+        write::line(&format!("{:>width$}  {label}  {}", "", grade(back)));
+        more(module, back, width);
     }
 }
 
@@ -79,7 +86,7 @@ fn grade(graded: &Graded) -> String {
 }
 
 /// The line below a row: what was found, and by which calls.
-fn more(module: &Module, graded: &Graded) {
+fn more(module: &Module, graded: &Graded, width: usize) {
     let verdict = &graded.verdict;
     if verdict.grade() == Grade::Reachable {
         return;
@@ -93,7 +100,7 @@ fn more(module: &Module, graded: &Graded) {
         true => String::new(),
         false => format!("; called from line {}", lines.join(", ")),
     };
-    write::line(&format!("{:>10}{said}{called}", ""));
+    write::line(&format!("{:>width$}    {said}{called}", ""));
 }
 
 /// The lines of the calls on the way to a move, but for that of the main sequence.

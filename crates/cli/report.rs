@@ -18,6 +18,10 @@ impl<'m> Report<'m> {
     pub(crate) fn new(module: &'m Module) -> Self {
         Self { module }
     }
+
+    pub(crate) fn module(&self) -> &'m Module {
+        self.module
+    }
 }
 
 impl Observer for Report<'_> {
@@ -157,7 +161,7 @@ pub(crate) fn pending(machine: &Machine<'_>) -> Value {
 pub(crate) fn ending_pc(ending: &Ending) -> Option<u32> {
     match ending {
         Ending::Refused(refusal) => Some(refusal.pc),
-        Ending::Fault { pc, .. } => Some(*pc),
+        Ending::Fault { pc, .. } | Ending::GivenUp { pc, .. } => Some(*pc),
         Ending::Trap(trap) => Some(trap.pc),
         Ending::Finished | Ending::Unhandled(_) | Ending::AtStart | Ending::Budget => None,
     }
@@ -171,6 +175,10 @@ pub(crate) fn ending_words(module: &Module, ending: &Ending) -> String {
             let names: Vec<&str> =
                 errors.iter().map(|error| module.errors[error.index()].name.as_str()).collect();
             format!("stopped by error {}", names.join(", "))
+        }
+        Ending::GivenUp { error, pc, why } => {
+            let error = &module.errors[error.index()].name;
+            format!("held by error {error}, due at {}: {why}", line_of(module, *pc))
         }
         Ending::AtStart => "back at the start".to_owned(),
         Ending::Budget => "stopped at the limit of instructions; `--limit` sets another".to_owned(),

@@ -38,6 +38,10 @@ impl<'m> Story<'m> {
         Self { module, headings: Vec::new() }
     }
 
+    pub(crate) fn module(&self) -> &'m Module {
+        self.module
+    }
+
     /// Say where the program is, whatever comes next.
     pub(crate) fn tell_headings(&mut self) {
         self.headings.drain(..).for_each(|heading| heading.write());

@@ -279,6 +279,9 @@ macro_rules! for_each_op {
 0xc1 ErrorClear "error.clear" (error: ErrorId) [--] after_forward(Word) error;
 /// Trap with a reason unless the operand is true.
 0xc2 Require "require" (prefix: Prefix, reason: ReasonId) [bool --] always error;
+/// An error is responded to here: whoever drives the machine is told, and may take it back. Going on
+/// means that going back has been given up, or was not asked for.
+0xc3 ErrorDue "error.due" (error: ErrorId) [--] always error;
 
 /// Begin tasks, one a branch: the branches follow, set apart by `fork.next`, up to the `fork.join`. The
 /// first goes on; the others wait for their turns. In reverse all stand at their starts again.

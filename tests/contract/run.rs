@@ -14,7 +14,8 @@ const MAX_STEPS: usize = 2_000;
 /// What restores less than was there, by the programmer's own word.
 const MAY_DIFFER: [&str; 3] = ["move.always", "block.skip", "block.replace"];
 /// Clauses that say how a step ended, and what it commanded, rather than what there is.
-const OF_THE_STEP: [&str; 7] = ["commands", "trap", "fault", "raises", "stop", "refused", "lands"];
+const OF_THE_STEP: [&str; 8] =
+    ["commands", "trap", "fault", "raises", "due", "stop", "refused", "lands"];
 
 /// Whether a contract is of a row, and holds.
 pub(crate) fn holds(row: &OpInfo, contract: &Contract) -> Result<(), String> {
@@ -102,7 +103,9 @@ impl<'t> Trial<'t> {
                 return Ok(());
             }
             match self.step(Direction::Forward) {
-                Ok(()) | Err(Stop::Raised { .. }) => self.history.push(self.picture()),
+                Ok(()) | Err(Stop::Raised { .. } | Stop::Due { .. }) => {
+                    self.history.push(self.picture())
+                }
                 Err(stop) => return Err(format!("on the way to it: {stop:?}")),
             }
             if self.history.len() > MAX_STEPS {
@@ -135,7 +138,9 @@ impl<'t> Trial<'t> {
         self.ended(&outcome, clauses)?;
         self.commanded(clauses)?;
         let mut expected = match &outcome {
-            Ok(()) | Err(Stop::Raised { .. }) => self.one_step_on(&before, clauses)?,
+            Ok(()) | Err(Stop::Raised { .. } | Stop::Due { .. }) => {
+                self.one_step_on(&before, clauses)?
+            }
             Err(Stop::Trap(_)) => self.at_statement()?,
             Err(_) => before.clone(),
         };
@@ -249,6 +254,7 @@ impl<'t> Trial<'t> {
             Err(Stop::Raised { error, .. }) => {
                 ("raises", module.errors[error.index()].name.clone())
             }
+            Err(Stop::Due { error, .. }) => ("due", module.errors[error.index()].name.clone()),
             Err(Stop::Finished) => ("stop", "finished".to_owned()),
             Err(Stop::AtStart) => ("stop", "start".to_owned()),
             Err(Stop::Refused(Refusal { reason, why, .. })) => {
@@ -264,13 +270,13 @@ impl<'t> Trial<'t> {
         };
         let pc = match outcome {
             Err(Stop::Trap(Trap { pc, .. }) | Stop::Refused(Refusal { pc, .. }))
-            | Err(Stop::Fault { pc, .. } | Stop::Raised { pc, .. }) => *pc,
+            | Err(Stop::Fault { pc, .. } | Stop::Raised { pc, .. } | Stop::Due { pc, .. }) => *pc,
             _ => self.pc,
         };
         if pc != self.pc {
             return Err(format!("it stopped at instruction {pc}, and should at {}", self.pc));
         }
-        for kind in ["trap", "fault", "raises", "stop", "refused"] {
+        for kind in ["trap", "fault", "raises", "due", "stop", "refused"] {
             let said = clause(clauses, kind).map(Value::one).transpose()?;
             if said != (kind == key).then_some(&text) {
                 return Err(format!("`{kind}` is {said:?}, and the step ended so: {outcome:?}"));

@@ -4,6 +4,7 @@
 //! command. A line of three dots stands for any number of lines.
 
 use crate::page::Block;
+use std::io::Read;
 use std::path::Path;
 use std::process::{Command, Stdio};
 
@@ -26,16 +27,21 @@ pub(crate) fn examples<'p>(block: &Block<'p>) -> Vec<Example<'p>> {
     examples
 }
 
-/// What a command prints: first on standard output, then on standard error.
+/// What a command prints, on standard output and standard error, in the order of a terminal.
 pub(crate) fn printed(command: &str, folder: &Path) -> String {
-    let output = Command::new(env!("CARGO_BIN_EXE_obverse"))
+    let (mut reader, writer) = std::io::pipe().expect("a pipe");
+    let mut child = Command::new(env!("CARGO_BIN_EXE_obverse"))
         .args(command.split_whitespace())
         .current_dir(folder)
         .stdin(Stdio::null())
-        .output()
+        .stdout(writer.try_clone().expect("a second end"))
+        .stderr(writer)
+        .spawn()
         .expect("the binary runs");
-    let text = |bytes: &[u8]| String::from_utf8_lossy(bytes).into_owned();
-    text(&output.stdout) + &text(&output.stderr)
+    let mut bytes = Vec::new();
+    reader.read_to_end(&mut bytes).expect("what it prints");
+    child.wait().expect("its end");
+    String::from_utf8_lossy(&bytes).into_owned()
 }
 
 /// Whether lines are those of a picture.

@@ -3,10 +3,10 @@
 use super::Result;
 use super::run;
 use crate::load;
+use crate::recovering;
 use crate::report;
 use crate::write;
 use obverse_recovery::Ending;
-use obverse_vm::Direction;
 use obverse_workcell::{Clock, Safety};
 use serde_json::{Map, json};
 
@@ -17,9 +17,10 @@ pub(crate) fn run(arguments: &Arguments) -> Result {
     let (mut cell, file) = run::workcell(arguments, &program)?;
     let mut machine = load::machine(&program, &cell, &file)?;
     let module = program.verified.module();
+    let mut memory = recovering::memory(arguments.recovering.memory.as_deref())?;
     run::head(arguments, &file.name);
     let start = machine.digest(&cell);
-    let there = run::go(arguments, &mut machine, Direction::Forward, &mut cell);
+    let (there, _) = run::there(arguments, &mut machine, &mut cell, &mut memory);
     let (there_s, forward_instructions) = (cell.now_s(), machine.executed());
     let tape_bits = machine.tape().map_or(0, obverse_tape::Tape::recorded_bits);
     if !arguments.json {
@@ -31,8 +32,9 @@ pub(crate) fn run(arguments: &Arguments) -> Result {
     if cell.is_stopped() {
         cell.release();
     }
-    let back = run::go(arguments, &mut machine, Direction::Reverse, &mut cell);
-    let recorded = run::record(arguments, &program, &machine, &cell, &back);
+    let back = run::back(arguments, &mut machine, &mut cell);
+    let recorded = run::record(arguments, &program, &machine, &cell, &back)
+        .and_then(|()| recovering::keep(&memory, arguments.recovering.memory.as_deref()));
     let is_identical = back == Ending::AtStart && machine.digest(&cell) == start;
     let back_s = cell.now_s() - there_s;
     if arguments.json {

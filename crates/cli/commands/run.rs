@@ -3,16 +3,21 @@
 use super::{Result, dry};
 use crate::load::{self, Program, Workcell};
 use crate::problem::Problem;
+use crate::recovering::{self, Terminal};
 use crate::report::{self, Report};
 use crate::story::Story;
 use crate::{Outcome, show, write};
-use obverse_recovery::{Ending, drive};
+use obverse_recovery::{Bounds, Ending, Incident, Memory, Recovery, drive, recover};
 use obverse_sim::Sim;
 use obverse_tape::TapeFile;
 use obverse_vm::{Direction, Limits, Machine};
 use obverse_workcell::Clock;
 use serde_json::{Map, json};
 use std::path::PathBuf;
+
+/// What it takes a person to put an error right, in seconds: going back is given up where it is
+/// expected to take longer.
+const PERSON_S: f64 = 300.0;
 
 #[derive(clap::Args)]
 pub(crate) struct Arguments {
@@ -30,6 +35,8 @@ pub(crate) struct Arguments {
     /// Stop after about so many instructions.
     #[arg(long, default_value_t = 1_000_000_000, value_name = "N")]
     pub(crate) limit: u64,
+    #[command(flatten)]
+    pub(crate) recovering: recovering::RecoveryArguments,
     /// Tell the run to machines: JSON Lines, a summary last.
     #[arg(long)]
     pub(crate) json: bool,
@@ -54,10 +61,12 @@ pub(crate) fn run(arguments: &RunArguments) -> Result {
     let program = load::program(&arguments.file)?;
     let (mut cell, file) = workcell(arguments, &program)?;
     let mut machine = load::machine(&program, &cell, &file)?;
+    let mut memory = recovering::memory(arguments.recovering.memory.as_deref())?;
     head(arguments, &file.name);
-    let ending = go(arguments, &mut machine, Direction::Forward, &mut cell);
-    let recorded = record(arguments, &program, &machine, &cell, &ending);
-    finish(arguments, &machine, &cell, &ending, recorded.as_ref().err());
+    let (ending, incidents) = there(arguments, &mut machine, &mut cell, &mut memory);
+    let recorded = record(arguments, &program, &machine, &cell, &ending)
+        .and_then(|()| recovering::keep(&memory, arguments.recovering.memory.as_deref()));
+    finish(arguments, &machine, &cell, (&ending, &incidents), recorded.as_ref().err());
     Ok(outcome(ending == Ending::Finished, recorded))
 }
 
@@ -96,24 +105,55 @@ pub(crate) fn head(arguments: &Arguments, cell_name: &str) {
     }
 }
 
-/// Run in a direction, telling it as asked.
-pub(crate) fn go(
+/// Run forward, recovering from errors, telling it as asked.
+pub(crate) fn there(
     arguments: &Arguments,
     machine: &mut Machine<'_>,
-    direction: Direction,
     cell: &mut Sim,
-) -> Ending {
+    memory: &mut Memory,
+) -> (Ending, Vec<Incident>) {
+    let module = machine.program().module();
+    let limits = Limits::instructions(arguments.limit);
+    let mut recovery = Recovery {
+        strategy: arguments.recovering.strategy,
+        bounds: Bounds::default(),
+        memory,
+        remembers: true,
+        person_s: PERSON_S,
+        seed: arguments.seed,
+        operator: &mut Terminal::new(arguments.recovering.release, arguments.json),
+        foresight: None,
+        incidents: Vec::new(),
+    };
+    let ending = if arguments.json {
+        recover(machine, limits, cell, &mut recovery, &mut Report::new(module))
+    } else {
+        let mut story = Story::new(module);
+        let ending = recover(machine, limits, cell, &mut recovery, &mut story);
+        tell_fault(&mut story, &ending);
+        ending
+    };
+    (ending, recovery.incidents)
+}
+
+/// Go back, telling it as asked.
+pub(crate) fn back(arguments: &Arguments, machine: &mut Machine<'_>, cell: &mut Sim) -> Ending {
     let module = machine.program().module();
     let limits = Limits::instructions(arguments.limit);
     if arguments.json {
-        return drive(machine, direction, limits, cell, &mut Report::new(module));
+        return drive(machine, Direction::Reverse, limits, cell, &mut Report::new(module));
     }
     let mut story = Story::new(module);
-    let ending = drive(machine, direction, limits, cell, &mut story);
+    let ending = drive(machine, Direction::Reverse, limits, cell, &mut story);
+    tell_fault(&mut story, &ending);
+    ending
+}
+
+/// Where the program was that a fault stopped.
+fn tell_fault(story: &mut Story<'_>, ending: &Ending) {
     if matches!(ending, Ending::Fault { .. }) {
         story.tell_headings();
     }
-    ending
 }
 
 /// Write the tape file of a run, if it was asked for.
@@ -142,7 +182,7 @@ fn finish(
     arguments: &Arguments,
     machine: &Machine<'_>,
     cell: &Sim,
-    ending: &Ending,
+    (ending, incidents): (&Ending, &[Incident]),
     unrecorded: Option<&Problem>,
 ) {
     let module = machine.program().module();
@@ -151,6 +191,7 @@ fn finish(
         let mut more = Map::new();
         more.insert("message".to_owned(), json!(words));
         more.insert("errors".to_owned(), report::pending(machine));
+        more.insert("incidents".to_owned(), recovering::incidents(module, incidents));
         more.insert("stopped_at".to_owned(), report::place(module, report::ending_pc(ending)));
         more.extend(unrecorded.map(report::messages));
         report::summary(ending.code(), report::figures(machine, cell), more);

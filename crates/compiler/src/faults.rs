@@ -101,7 +101,7 @@ pub(crate) fn check(program: &Program, named_faults: &[NamedFault], reports: &mu
                     Some(Act::Motion) => moves = true,
                     Some(Act::Other) => acts = true,
                     None => {}
-                })
+                });
             }
         }
     }

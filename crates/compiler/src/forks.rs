@@ -180,13 +180,13 @@ impl Fork<'_> {
         let mut diagnostic = match how {
             How::Commands => {
                 let message = format!("two branches of this fork use {what}");
-                Diagnostic::error(Code::SharedDevice, span, message, text).with_help(
-                    "leave it to one branch; what comes one after the other can be one branch",
-                )
+                Diagnostic::error(Code::SharedDevice, span, message, text)
+                    .with_help("leave it to one branch, or do one after the other without `fork`")
             }
             How::Writes => {
                 let message = format!("two branches of this fork assign {what}");
                 Diagnostic::error(Code::SharedVariable, span, message, text)
+                    .with_note("which of them comes last depends on whose turn it is when")
                     .with_help("give each branch a variable of its own")
             }
             How::Reads => {
@@ -194,6 +194,7 @@ impl Fork<'_> {
                 let message =
                     format!("branch {reader} reads {what}, which branch {writer} assigns");
                 warning(Code::ReadsOtherBranch, span, message, text)
+                    .with_note("which value that is depends on whose turn it is when")
                     .with_help("read it after the fork, or have one branch do both")
             }
         };
@@ -228,7 +229,7 @@ impl Fork<'_> {
     fn function_name(&self, function: FunctionId) -> String {
         let function = self.program.function(function);
         match function.kind {
-            FunctionKind::Replacement => "this block".to_owned(),
+            FunctionKind::Replacement => "the block in reverse".to_owned(),
             FunctionKind::Cleanup => "the cleanup".to_owned(),
             _ => format!("`{}`", function.name),
         }

@@ -59,6 +59,11 @@ impl Reports {
         }
     }
 
+    /// Whether no further error is kept.
+    pub(crate) fn is_full(&self) -> bool {
+        self.errors.len() >= MAX_KEPT
+    }
+
     /// Keep an error that needs no more than one place and a sentence.
     pub(crate) fn error(&mut self, code: Code, span: Span, message: String, at: &str) {
         self.add(Diagnostic::error(code, span, message, at));
@@ -75,7 +80,7 @@ impl Reports {
         word: &str,
         words: impl Iterator<Item = &'w str>,
     ) -> Option<&'w str> {
-        if self.errors.len() >= MAX_KEPT {
+        if self.is_full() {
             return None;
         }
         let budget = MAX_COMPARED.saturating_sub(self.compared);

@@ -1,7 +1,7 @@
 //! What the code does about an error where it is due, as its declaration says.
 //!
-//! Reversal is not among it: whoever drives the machine goes back when the error is raised, and
-//! the code after that is what follows once reversing has been given up.
+//! Reversal is not among it: whoever drives the machine goes back when the code says that the error
+//! is due, and the code after that is what follows once reversing has been given up.
 
 use obverse_bytecode::{Continuation, ErrorDeclaration, Otherwise, Recovery, Respond, Severity};
 use obverse_isa::FunctionId;

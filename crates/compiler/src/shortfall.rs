@@ -111,7 +111,7 @@ fn chain(found: Diagnostic, source: Source<'_>, way: &Way) -> Diagnostic {
     for link in &way.links {
         let (pc, text) = match *link {
             Link::CalledFrom(pc) => (pc, "called from here"),
-            Link::Within(pc) => (pc, "going back enters what this has called"),
+            Link::Within(pc) => (pc, "going back leads into this call"),
             Link::InPlaceOf(pc) => (pc, "run in place of this"),
             Link::Beside(pc) => (pc, "another branch of this may have run"),
         };

@@ -69,6 +69,9 @@ pub(crate) struct Edge {
     pub(crate) word: &'static str,
 }
 
+/// What is said of a call that is made going back.
+const TAKES_BACK: &str = "takes this back by";
+
 /// What a function or block uses itself.
 #[derive(Debug, Default)]
 pub(crate) struct Uses {
@@ -107,7 +110,7 @@ impl Uses {
             }
             for error in effects.due(&statement.kind, &program.module.errors) {
                 if let Response::Recover { using: Some(callee), .. } = effects.response(error) {
-                    self.call(callee, "recovers by", statement.span);
+                    self.call(callee, "recovers using", statement.span);
                 }
             }
         });
@@ -160,13 +163,13 @@ impl Uses {
             }
             StatementKind::Advance(callee, counterpart) => {
                 self.call(*callee, "advances", span);
-                counterpart.iter().for_each(|callee| self.call(*callee, "runs in reverse", span));
+                counterpart.iter().for_each(|callee| self.call(*callee, TAKES_BACK, span));
             }
             StatementKind::Io(callee, counterpart) => {
                 self.call(*callee, "does", span);
-                counterpart.iter().for_each(|callee| self.call(*callee, "runs in reverse", span));
+                counterpart.iter().for_each(|callee| self.call(*callee, TAKES_BACK, span));
             }
-            StatementKind::Reversed(_, Some(callee)) => self.call(*callee, "runs in reverse", span),
+            StatementKind::Reversed(_, Some(callee)) => self.call(*callee, TAKES_BACK, span),
             StatementKind::Call(callee, arguments) => {
                 self.call(*callee, "calls", span);
                 arguments.iter().for_each(|argument| self.expression(argument));

@@ -100,9 +100,10 @@ impl Explorer<'_> {
                 self.pass(state)
             }
             Instr::Require { .. } if operands.word(0) == Some(0) => None,
-            Instr::Require { .. } | Instr::Wait { .. } | Instr::Checkpoint { .. } => {
-                self.pass(state)
-            }
+            Instr::Require { .. }
+            | Instr::Wait { .. }
+            | Instr::Checkpoint { .. }
+            | Instr::ErrorDue { .. } => self.pass(state),
             _ => self.act_on_robot(state, instr, &operands),
         }
     }

@@ -1,77 +1,33 @@
-//! Driving a machine through a program: what happens when an error is raised or something fails.
+//! Errors: when to go back, how far, what to change, when to go on, when to give up.
 //!
 //! Recovery owns the loop and asks the machine to step; the machine never calls up. It alone
 //! decides how a run goes on after an error; it knows nothing of how motions, tapes or source texts
-//! work. At present the recovery sequences that a program names run as part of its code, so that a
-//! raised error is noted and gone on from; policies of reversal are carried in the module.
+//! work.
+//!
+//! Reading order: [`ending`], how a run ends; [`mod@drive`], a run that never goes back by itself;
+//! [`trail`], what it may be taken back to; [`strategy`], the ways of recovering; [`incident`], an
+//! error at a place and what has been tried; [`depth`], how far to go back next; [`memory`], what
+//! was learned of that; [`foresight`], who would know better; [`change`], what is done otherwise on the way forward again; [`tell`], what
+//! a person is told; [`mod@recover`], the loop.
 
-use obverse_isa::ErrorId;
-use obverse_vm::{Direction, Limits, Machine, Observer, Refusal, Stop, Trap};
-use obverse_workcell::{Fault, Workcell};
+pub mod change;
+pub mod depth;
+pub mod drive;
+pub mod ending;
+pub mod foresight;
+pub mod incident;
+pub mod memory;
+pub mod recover;
+pub mod strategy;
+pub mod tell;
+pub mod trail;
 
-/// How a run ended.
-#[derive(Clone, Debug, PartialEq)]
-pub enum Ending {
-    /// The program ended.
-    Finished,
-    /// The program ended with these errors pending: nothing dealt with them.
-    Unhandled(Vec<ErrorId>),
-    /// The run is back where it began.
-    AtStart,
-    /// Going back stopped at what cannot be taken back.
-    Refused(Refusal),
-    /// The workcell did not do as commanded.
-    Fault {
-        /// What happened.
-        fault: Fault,
-        /// The instruction.
-        pc: u32,
-        /// Which way the machine was going.
-        direction: Direction,
-    },
-    /// The machine refuses to go on.
-    Trap(Trap),
-    /// As many instructions as were allowed have been run.
-    Budget,
-}
-
-impl Ending {
-    /// The word for it that machines read.
-    #[must_use]
-    pub fn code(&self) -> &'static str {
-        match self {
-            Self::Finished => "finished",
-            Self::Unhandled(_) => "unhandled_error",
-            Self::AtStart => "at_start",
-            Self::Refused(_) => "refused",
-            Self::Fault { .. } => "fault",
-            Self::Trap(_) => "trap",
-            Self::Budget => "budget",
-        }
-    }
-}
-
-/// Run a program in a direction until it ends.
-pub fn drive(
-    machine: &mut Machine<'_>,
-    direction: Direction,
-    limits: Limits,
-    cell: &mut dyn Workcell,
-    observer: &mut dyn Observer,
-) -> Ending {
-    let begin = machine.executed();
-    loop {
-        let left = limits.instructions.saturating_sub(machine.executed() - begin);
-        return match machine.run(direction, Limits::instructions(left), cell, observer) {
-            // What follows the raise in the code is what happens once reversal has been given up.
-            Stop::Raised { .. } => continue,
-            Stop::Finished if machine.state().raised().is_empty() => Ending::Finished,
-            Stop::Finished => Ending::Unhandled(machine.state().raised().to_vec()),
-            Stop::AtStart | Stop::AtMark | Stop::OffMark => Ending::AtStart,
-            Stop::Budget => Ending::Budget,
-            Stop::Fault { fault, pc, direction } => Ending::Fault { fault, pc, direction },
-            Stop::Refused(refusal) => Ending::Refused(refusal),
-            Stop::Trap(trap) => Ending::Trap(trap),
-        };
-    }
-}
+pub use drive::drive;
+pub use ending::{Ending, GiveUp};
+pub use foresight::Clairvoyant;
+pub use incident::{Attempt, Incident, Outcome};
+pub use memory::{Memory, MemoryError};
+pub use recover::{Foresight, Recovery, Site, recover};
+pub use strategy::{Bounds, Strategy};
+pub use tell::{Operator, Step, Teller, Unattended, Why};
+pub use trail::{Action, Trail};

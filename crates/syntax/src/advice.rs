@@ -156,6 +156,10 @@ impl Unexpected<'_> {
             let here = Span::new(self.span().start, self.span().start);
             return Some(said("write `repeat 3 times { .. }`").replacing(here, "times "));
         }
+        if self.found == Token::OpenBracket && self.expectation.is_only("=") {
+            let here = Span::new(self.span().start, self.span().start);
+            return Some(said("put `=` before it").replacing(here, "= "));
+        }
         let is_wait = self.expectation.allows("for") && !self.expectation.allows_statement();
         if is_wait {
             return Some(said("say how long it waits at the most: `for up to 2 s`"));

@@ -24,6 +24,11 @@ impl<'e> Expectation<'e> {
         self.tokens.contains(token)
     }
 
+    /// Whether nothing but this token is allowed.
+    pub(crate) fn is_only(&self, token: &str) -> bool {
+        self.tokens.len() == 1 && self.allows(token)
+    }
+
     /// Whether a statement can begin here: in a block, and at the top in order to say that it
     /// cannot.
     pub(crate) fn allows_statement(&self) -> bool {

@@ -41,8 +41,7 @@ const fn opens(words: &'static [&'static str], help: &'static str) -> Row {
     Row { words, help, then: Then::InBlock }
 }
 
-const JOINT_MOVES: &[&str] =
-    &["movej", "ptp", "sptp", "moveabsj", "moveto", "goto", "movejoint", "ptprel"];
+const JOINT_MOVES: &[&str] = &["movej", "ptp", "sptp", "moveabsj", "moveto", "movejoint", "ptprel"];
 const LINEAR_MOVES: &[&str] = &["movel", "lin", "slin", "movelin", "linrel", "movep"];
 const POSES: [&str; 7] = ["robtarget", "jointtarget", "e6pos", "e6axis", "frame", "pos", "pose"];
 const ENDS: &[&str] = &[
@@ -77,7 +76,7 @@ const ROWS: &[Row] = &[
             "reset",
             "pulsedo",
         ],
-        "an output is set by its number: `set 0 high` or `set 0 low`",
+        "name the output, `output gripper = 0`, and write `set gripper high` or `set gripper low`",
     ),
     line(
         &["waitdi", "waituntil", "waitdo", "waitinput"],
@@ -94,8 +93,9 @@ const ROWS: &[Row] = &[
         "`return` ends the sequence; to stop the program `throw` an error whose severity is fatal",
     ),
     line(
-        &["jmp", "lbl", "label", "jump"],
-        "there are no jumps: write `loop { .. }` with `break`, or `if .. { .. }`",
+        &["goto", "jmp", "lbl", "label", "jump"],
+        "there are no jumps: write `loop { .. }` with `break`, or `if .. { .. }`; to go to a place \
+         write `move to NAME`",
     ),
     line(
         &["velset", "accset", "setspeed", "setvel", "overspeed"],
@@ -288,6 +288,7 @@ mod tests {
         assert_eq!(instead("movel", "(p[0.1, 0.2])"), None);
         assert_eq!(instead("PTP", " {X 10}"), None);
         assert_eq!(instead("MoveL", " Offs(p10, 0, 0, 50)"), None);
+        assert_eq!(instead("GOTO", " again"), None, "a jump goes to no place of the arm");
     }
 
     #[test]

@@ -157,6 +157,40 @@ impl Switch {
     }
 }
 
+/// A fault of the workcell that became an error of the program: the act that it stopped counts as
+/// done as far as it came.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Fault {
+    /// The error, by its place in the module's table.
+    pub error: u16,
+    /// How many instructions lay between the start of the program and where it became one.
+    pub steps: u64,
+}
+
+impl Fault {
+    /// What a word says.
+    #[must_use]
+    pub fn from_word(word: u64) -> Self {
+        Self { error: word as u16, steps: word >> 16 }
+    }
+
+    /// Push it.
+    pub fn push(&self, recorder: &mut impl Recorder) {
+        recorder.fault(self.steps << 16 | u64::from(self.error));
+    }
+
+    /// Pop the newest.
+    pub fn pop(tape: &mut Tape) -> Option<Self> {
+        tape.faults.pop().map(Self::from_word)
+    }
+
+    /// Read the newest without popping.
+    #[must_use]
+    pub fn peek(tape: &Tape) -> Option<Self> {
+        tape.faults.last().map(Self::from_word)
+    }
+}
+
 /// Where a task was held when a fork was left. What its calls held is a [`Frame`] each.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct HeldTask {

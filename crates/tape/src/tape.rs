@@ -13,6 +13,8 @@ pub trait Recorder {
     fn joints(&mut self, joints: JointConfiguration);
     /// Write a word on whose turn it was.
     fn control(&mut self, word: u64);
+    /// Write a word on a fault that became an error.
+    fn fault(&mut self, word: u64);
     /// Whether more has been recorded than may be.
     fn is_full(&self) -> bool;
 }
@@ -31,6 +33,8 @@ impl Recorder for NoTape {
     #[inline(always)]
     fn control(&mut self, _: u64) {}
     #[inline(always)]
+    fn fault(&mut self, _: u64) {}
+    #[inline(always)]
     fn is_full(&self) -> bool {
         false
     }
@@ -47,13 +51,15 @@ pub struct Place {
     pub joints: u64,
     /// Words on the turns of tasks.
     pub control: u64,
+    /// Faults that became errors.
+    pub faults: u64,
 }
 
 impl Place {
     /// The size of the tape up to here, in bits.
     #[must_use]
     pub fn size_bits(&self) -> u64 {
-        self.bits + 64 * (self.words + self.control) + 384 * self.joints
+        self.bits + 64 * (self.words + self.control + self.faults) + 384 * self.joints
     }
 }
 
@@ -64,6 +70,7 @@ pub struct Tape {
     pub(crate) words: Stream<u64>,
     pub(crate) joints: Stream<[f64; 6]>,
     pub(crate) control: Stream<u64>,
+    pub(crate) faults: Stream<u64>,
     /// What has been recorded and dropped, in bits.
     dropped_bits: u64,
     /// The most full chunks that may be held, each as large as one of words.
@@ -99,10 +106,15 @@ impl Recorder for Tape {
         self.control.push(word);
     }
 
+    fn fault(&mut self, word: u64) {
+        self.faults.push(word);
+    }
+
     #[inline(always)]
     fn is_full(&self) -> bool {
         let joints = self.joints.full_chunks() * size_of::<[f64; 6]>() / size_of::<u64>();
         let words = self.words.full_chunks() + self.control.full_chunks();
+        let words = words + self.faults.full_chunks();
         words + self.bits.full_chunks() + joints > self.limit_chunks
     }
 }
@@ -116,6 +128,7 @@ impl Tape {
             words: Stream::default(),
             joints: Stream::default(),
             control: Stream::default(),
+            faults: Stream::default(),
             dropped_bits: 0,
             limit_chunks: limit_bytes / (CHUNK * 8),
         }
@@ -129,6 +142,7 @@ impl Tape {
             words: self.words.len() as u64,
             joints: self.joints.len() as u64,
             control: self.control.len() as u64,
+            faults: self.faults.len() as u64,
         }
     }
 
@@ -145,6 +159,7 @@ impl Tape {
         self.words.truncate(to.words as usize);
         self.joints.truncate(to.joints as usize);
         self.control.truncate(to.control as usize);
+        self.faults.truncate(to.faults as usize);
         // What a file says was dropped is not believed.
         let dropped_bits = before_bits - self.place().size_bits();
         self.dropped_bits = self.dropped_bits.saturating_add(dropped_bits);
@@ -166,6 +181,7 @@ impl Tape {
     #[must_use]
     pub fn held_bytes(&self) -> usize {
         let words = self.words.held_bytes() + self.control.held_bytes();
+        let words = words + self.faults.held_bytes();
         self.bits.held_bytes() + words + self.joints.held_bytes()
     }
 
@@ -201,6 +217,7 @@ impl Tape {
             words: self.words.iter().collect(),
             joints: self.joints.iter().collect(),
             control: self.control.iter().collect(),
+            faults: self.faults.iter().collect(),
             dropped_bits: self.dropped_bits,
         }
     }
@@ -213,6 +230,7 @@ impl Tape {
             words: streams.words.iter().copied().collect(),
             joints: streams.joints.iter().copied().collect(),
             control: streams.control.iter().copied().collect(),
+            faults: streams.faults.iter().copied().collect(),
             dropped_bits: streams.dropped_bits,
             limit_chunks: DEFAULT_LIMIT_BYTES / (CHUNK * 8),
         }
@@ -230,6 +248,8 @@ pub struct Streams {
     pub joints: Vec<[f64; 6]>,
     /// Words on the turns of tasks.
     pub control: Vec<u64>,
+    /// Words on the faults that became errors.
+    pub faults: Vec<u64>,
     /// What was recorded before and dropped, in bits.
     pub dropped_bits: u64,
 }

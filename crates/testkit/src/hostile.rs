@@ -99,7 +99,9 @@ fn run(program: &Verified) -> bool {
     let Ok(mut machine) = Machine::new(program, &cell) else { return false };
     let limits = Limits::instructions(STEPS);
     let mut raised = 0;
-    while let Stop::Raised { .. } = machine.run(Direction::Forward, limits, &mut cell, &mut ()) {
+    while let Stop::Raised { .. } | Stop::Due { .. } =
+        machine.run(Direction::Forward, limits, &mut cell, &mut ())
+    {
         raised += 1;
         if raised == STEPS {
             break;

@@ -55,7 +55,7 @@ pub fn agrees_forward_on(source: &str, seed: u64) -> bool {
     let mut machine = case.machine(&cell);
     let stop = loop {
         match machine.run(Direction::Forward, Limits::NONE, &mut cell, &mut ()) {
-            Stop::Raised { .. } => {}
+            Stop::Raised { .. } | Stop::Due { .. } => {}
             stop => break stop,
         }
     };
@@ -179,7 +179,7 @@ impl<'s> Case<'s> {
         loop {
             way.push(place(&machine, &cell));
             match machine.step(Direction::Forward, &mut cell, &mut ()) {
-                Ok(()) | Err(Stop::Raised { .. }) => {}
+                Ok(()) | Err(Stop::Raised { .. } | Stop::Due { .. }) => {}
                 Err(_) => break,
             }
         }
@@ -203,7 +203,7 @@ impl<'s> Case<'s> {
         }
         let mut cell = Logged::new(seed);
         let mut machine = self.machine(&cell);
-        while let Stop::Raised { .. } =
+        while let Stop::Raised { .. } | Stop::Due { .. } =
             machine.run(Direction::Forward, Limits::NONE, &mut cell, &mut ())
         {}
         self.same("the commands", "of a run", &cell.log, &log);
@@ -359,7 +359,7 @@ impl Walk<'_> {
                 self.place += 1;
             }
             match machine.step(Direction::Forward, cell, &mut ()) {
-                Ok(()) | Err(Stop::Raised { .. }) => {}
+                Ok(()) | Err(Stop::Raised { .. } | Stop::Due { .. }) => {}
                 Err(_) => break,
             }
         }
@@ -394,9 +394,9 @@ impl Walk<'_> {
 
     /// At a run to the end.
     fn run_to_end(&self, machine: &mut Machine<'_>, cell: &mut Logged) {
-        while let Stop::Raised { .. } = machine.run(Direction::Forward, Limits::NONE, cell, &mut ())
-        {
-        }
+        while let Stop::Raised { .. } | Stop::Due { .. } =
+            machine.run(Direction::Forward, Limits::NONE, cell, &mut ())
+        {}
     }
 
     /// From statement to statement, at a run, as far as it went by steps.

@@ -43,7 +43,7 @@ fn picture(machine: &Machine<'_>, cell: &Ledger) -> (u64, Place) {
 fn run(machine: &mut Machine<'_>, direction: Direction, cell: &mut Ledger) -> Stop {
     loop {
         match machine.run(direction, Limits::NONE, cell, &mut ()) {
-            Stop::Raised { .. } => {}
+            Stop::Raised { .. } | Stop::Due { .. } => {}
             stop => return stop,
         }
     }
@@ -52,7 +52,7 @@ fn run(machine: &mut Machine<'_>, direction: Direction, cell: &mut Ledger) -> St
 /// One step; whether the run goes on.
 fn step(machine: &mut Machine<'_>, direction: Direction, cell: &mut Ledger) -> bool {
     match machine.step(direction, cell, &mut ()) {
-        Ok(()) | Err(Stop::Raised { .. }) => true,
+        Ok(()) | Err(Stop::Raised { .. } | Stop::Due { .. }) => true,
         Err(Stop::Finished | Stop::AtStart) => false,
         Err(stop) => panic!("a verified module stopped: {stop:?}"),
     }

@@ -104,7 +104,7 @@ impl Case<'_> {
             let stop = loop {
                 let limits = Limits::instructions(MAX_INSTRUCTIONS);
                 match machine.run(asked, limits, &mut sim, &mut watch) {
-                    Stop::Raised { .. } => {}
+                    Stop::Raised { .. } | Stop::Due { .. } => {}
                     stop => break stop,
                 }
             };

@@ -120,7 +120,10 @@ fn machine<'p>(program: &'p Verified, cell: &Ledger) -> Machine<'p> {
 
 /// One step; whether the run goes on.
 fn step(machine: &mut Machine<'_>, direction: Direction, cell: &mut Ledger) -> bool {
-    matches!(machine.step(direction, cell, &mut ()), Ok(()) | Err(Stop::Raised { .. }))
+    matches!(
+        machine.step(direction, cell, &mut ()),
+        Ok(()) | Err(Stop::Raised { .. } | Stop::Due { .. })
+    )
 }
 
 /// Go back as far as it goes; where that ended, unless it was for the values of a run.
@@ -129,7 +132,7 @@ fn back(machine: &mut Machine<'_>, cell: &mut Ledger) -> Option<Horizon> {
     loop {
         let left = Limits::instructions(MAX_BACK.saturating_sub(machine.executed() - begin));
         match machine.run(Direction::Reverse, left, cell, &mut ()) {
-            Stop::Raised { .. } => {}
+            Stop::Raised { .. } | Stop::Due { .. } => {}
             Stop::AtStart => return Some(Horizon::Start),
             Stop::Refused(refusal) => return Some(Horizon::Never(refusal.pc)),
             _ => return None,

@@ -175,7 +175,7 @@ pub fn words_restore_the_program(u: &mut Unstructured<'_>) -> Result<bool> {
     let start = machine.digest(&uncommanded);
     for _ in 0..u.int_in_range(0..=2_000)? {
         match machine.step(Direction::Forward, &mut cell, &mut ()) {
-            Ok(()) | Err(Stop::Raised { .. }) => {}
+            Ok(()) | Err(Stop::Raised { .. } | Stop::Due { .. }) => {}
             Err(Stop::Finished) => break,
             Err(_) => return Ok(false),
         }

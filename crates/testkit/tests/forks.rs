@@ -44,7 +44,7 @@ fn run(source: &str) -> Run {
     let mut way = vec![machine.digest(&cell)];
     let end = loop {
         match machine.step(Direction::Forward, &mut cell, &mut ()) {
-            Ok(()) | Err(Stop::Raised { .. }) => way.push(machine.digest(&cell)),
+            Ok(()) | Err(Stop::Raised { .. } | Stop::Due { .. }) => way.push(machine.digest(&cell)),
             Err(stop) => break stop,
         }
     };

@@ -58,7 +58,10 @@ fn while_an_error_is_pending_the_others_are_held() {
     let mut cell = Logged::new(1);
     let mut machine = Machine::new(&program, &cell).expect("it links");
     let (before, stop) = outputs(&mut machine, &mut cell, Direction::Forward);
-    assert!(before.is_empty() && matches!(stop, Stop::Raised { .. }), "{before:?}, {stop:?}");
+    assert!(
+        before.is_empty() && matches!(stop, Stop::Raised { .. } | Stop::Due { .. }),
+        "{before:?}, {stop:?}"
+    );
     let (after, stop) = outputs(&mut machine, &mut cell, Direction::Forward);
     assert_eq!((&after[..], stop), (&[0, 1, 2, 3, 4][..], Stop::Finished));
 }

@@ -13,8 +13,10 @@
 //! The machine knows nothing of source languages, of how a workcell does what it is told, or of
 //! when going back is wise.
 
+pub mod alter;
 pub mod class;
 pub mod convert;
+mod fault;
 mod hot;
 pub mod link;
 pub mod machine;
@@ -29,6 +31,7 @@ mod task;
 pub mod values;
 mod written;
 
+pub use alter::{Alteration, Aside};
 pub use link::{LinkError, Links};
 pub use machine::{Limits, Machine, Mark};
 pub use observe::{Event, Observer};

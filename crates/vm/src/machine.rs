@@ -1,5 +1,6 @@
 //! The machine: a verified program, its state, and its tape, run in either direction.
 
+use crate::alter::Alteration;
 use crate::hot::{self, Exit, Reversed};
 use crate::link::{LinkError, Links};
 use crate::observe::Observer;
@@ -28,6 +29,8 @@ pub struct Machine<'p> {
     pub(crate) tape: Option<Tape>,
     pub(crate) commands: u64,
     pub(crate) executed: u64,
+    /// What is done otherwise than the program says.
+    pub(crate) alteration: Option<Alteration>,
     /// Whether what is reversed restores the program's state alone and commands nothing.
     pub(crate) is_muted: bool,
     /// How many steps back over a block with a reverse of its own are believed: a machine knows its
@@ -57,6 +60,14 @@ impl Limits {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub struct Mark {
     steps: u64,
+}
+
+impl Mark {
+    /// Where the machine was so many steps from the start of the program.
+    #[must_use]
+    pub fn at(steps: u64) -> Self {
+        Self { steps }
+    }
 }
 
 macro_rules! values {
@@ -114,6 +125,7 @@ impl<'p> Machine<'p> {
             tape: Some(Tape::default()),
             commands: 0,
             executed: 0,
+            alteration: None,
             is_muted: false,
             believed_steps: u64::MAX,
         })
@@ -202,6 +214,17 @@ impl<'p> Machine<'p> {
         let outcome = self.step_reverse(&mut host);
         self.is_muted = false;
         outcome
+    }
+
+    /// Take the program's own state back to a mark, commanding nothing: the world stays as it is.
+    ///
+    /// # Errors
+    /// Why it cannot be taken back as far.
+    pub fn unwind_to(&mut self, mark: Mark, cell: &mut dyn Workcell) -> Outcome {
+        while self.state.steps() > mark.steps {
+            self.unwind(cell)?;
+        }
+        Ok(())
     }
 
     fn step_forward(&mut self, host: &mut Host<'_>) -> Outcome {
@@ -351,6 +374,11 @@ impl<'p> Machine<'p> {
     /// While a function is run in place of a reversal, the directions change places.
     fn direction_of(&self, asked: Direction) -> Direction {
         if self.state.compensations.len() % 2 == 1 { asked.opposite() } else { asked }
+    }
+
+    /// From here on, do otherwise than the program says, or no longer.
+    pub fn alter(&mut self, alteration: Option<Alteration>) {
+        self.alteration = alteration;
     }
 
     /// A mark of where the machine is.

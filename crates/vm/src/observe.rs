@@ -15,6 +15,11 @@ pub struct Event {
     pub instr: Instr,
     /// What came of it, if it was a motion.
     pub report: Option<MotionReport>,
+    /// How many instructions lie between the start of the program and here, after it.
+    pub steps: u64,
+    /// How many blocks with a reverse of their own are open around it: what is never taken back
+    /// outside such a block cannot be passed over.
+    pub open_blocks: u32,
     /// How many calls are under way after it.
     pub frames: usize,
     /// Which branch did it of each fork that is open, outermost first.

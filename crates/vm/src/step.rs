@@ -42,6 +42,8 @@ macro_rules! acts {
             links: &$machine.links,
             cell: &mut *$host.cell,
             level_before: state.pending.and_then(|pending| pending.level_before),
+            pc: state.place.pc as u32,
+            alteration: $machine.alteration.as_ref(),
             report: None,
         }
     }};
@@ -132,6 +134,7 @@ impl Machine<'_> {
         self.end_turn(instr);
         match instr {
             Instr::ErrorRaise { error } => Err(Stop::Raised { error, pc: effect as u32 }),
+            Instr::ErrorDue { error } => Err(Stop::Due { error, pc: effect as u32 }),
             _ => Ok(()),
         }
     }
@@ -147,6 +150,7 @@ impl Machine<'_> {
             self.state.depth = 0;
             return Ok(());
         }
+        self.take_back_fault();
         if self.turn_back()? {
             return Ok(());
         }
@@ -578,8 +582,10 @@ impl Machine<'_> {
             return;
         }
         let instr = self.program.module().code[at];
-        let (frames, branches) = (self.state.frames.len(), self.state.branches());
-        let event = Event { direction, pc: at as u32, instr, report, frames, branches };
+        let (steps, frames) = (self.state.steps(), self.state.frames.len());
+        let (open_blocks, branches) = (self.state.open_blocks, self.state.branches());
+        let pc = at as u32;
+        let event = Event { direction, pc, instr, report, steps, open_blocks, frames, branches };
         host.observer.on_event(&event, host.cell);
     }
 }

@@ -26,6 +26,13 @@ pub enum Stop {
         /// The instruction that raised it.
         pc: u32,
     },
+    /// An error that is pending is responded to here; going on means that going back was given up.
+    Due {
+        /// The error.
+        error: ErrorId,
+        /// The instruction that says so.
+        pc: u32,
+    },
     /// The workcell did not do as commanded: the act is pending, and may be done again in either
     /// direction.
     Fault {

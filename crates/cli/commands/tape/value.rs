@@ -2,7 +2,7 @@
 
 use obverse_bytecode::Module;
 use obverse_isa::{Class, GlobalId, Instr, LocalId, RecordKind, Setting, SpeedId, Type};
-use obverse_tape::record::Switch;
+use obverse_tape::record::{Fault, Switch};
 use obverse_tape::{Place, Tape};
 
 /// The newest record of each stream.
@@ -11,6 +11,7 @@ pub(super) struct Newest {
     word: Option<u64>,
     joints: Option<[f64; 6]>,
     control: Option<u64>,
+    fault: Option<Fault>,
 }
 
 impl Newest {
@@ -20,6 +21,7 @@ impl Newest {
             word: tape.and_then(Tape::newest_word),
             joints: tape.and_then(Tape::newest_joints),
             control: tape.and_then(Tape::newest_control),
+            fault: tape.and_then(Fault::peek),
         }
     }
 }
@@ -46,7 +48,12 @@ pub(super) fn words(module: &Module, pc: u32, size: Place, top: &Newest) -> Stri
         _ => Some(frame(size)),
     };
     let turn = top.control.filter(|_| size.control > 0).map(|word| turn(size.control, word));
-    own.into_iter().chain(turn).collect::<Vec<_>>().join(", ")
+    let raised = |fault: Fault| {
+        let error = module.errors.get(usize::from(fault.error));
+        format!("a fault as error {}", error.map_or("unknown", |error| &error.name))
+    };
+    let fault = top.fault.filter(|_| size.faults > 0).map(raised);
+    own.into_iter().chain(turn).chain(fault).collect::<Vec<_>>().join(", ")
 }
 
 /// Whose turn ended with the instruction.

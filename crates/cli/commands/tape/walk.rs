@@ -162,5 +162,6 @@ fn less(a: Place, b: Place) -> Place {
         words: a.words.saturating_sub(b.words),
         joints: a.joints.saturating_sub(b.joints),
         control: a.control.saturating_sub(b.control),
+        faults: a.faults.saturating_sub(b.faults),
     }
 }

@@ -128,8 +128,15 @@ impl<'s> Checker<'s> {
                 Diagnostic::error(Code::MissingUnit, span, message, "a number without a unit")
                     .with_help(format!("write the unit after it: {}", unit.examples()))
             }
-            (ValueType::Real(_), ValueType::Real(_)) => {
-                Diagnostic::error(Code::UnitMismatch, span, message, found.to_string())
+            (ValueType::Real(unit), ValueType::Real(_)) => {
+                let diagnostic =
+                    Diagnostic::error(Code::UnitMismatch, span, message, found.to_string());
+                match is_literal && !unit.is_none() {
+                    true => {
+                        diagnostic.with_help(format!("{needed} is written in {}", unit.examples()))
+                    }
+                    false => diagnostic,
+                }
             }
             _ => Diagnostic::error(Code::TypeMismatch, span, message, found.to_string()),
         };

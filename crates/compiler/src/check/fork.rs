@@ -83,10 +83,14 @@ impl<'s> Checker<'s> {
 
     /// A `break` or `return` whose goal lies outside of the fork.
     pub(super) fn report_leaves_fork(&mut self, word: &str, span: Span, fork: Span) {
-        let message = format!("`{word}` leaves a fork, which ends when all its branches have");
-        let diagnostic = Diagnostic::error(Code::LeavesFork, span, message, "leaves the fork")
-            .with_label(fork, "the fork begins here")
-            .with_help("leave by a condition that is tested after the fork");
+        let message =
+            format!("`{word}` cannot leave a fork, which ends when all its branches have");
+        let diagnostic =
+            Diagnostic::error(Code::LeavesFork, span, message, "would leave it half-way")
+                .with_label(fork, "the fork begins here")
+                .with_help(format!(
+                    "note it in a variable, and `{word}` after the fork if that is set"
+                ));
         self.reports.add(diagnostic);
     }
 }

@@ -4,9 +4,10 @@ use super::Checker;
 use super::frame::FrameScope;
 use super::names::Meaning;
 use crate::report::warning;
-use crate::tree::{Block, Body, Function, Layout, MAX_SLOTS, Statement};
+use crate::response::{Response, response};
+use crate::tree::{Block, Body, Function, Layout, MAX_SLOTS, Statement, StatementKind};
 use crate::types::ValueType;
-use obverse_bytecode::FunctionKind;
+use obverse_bytecode::{Continuation, ErrorDeclaration, FunctionKind, Recovery, Severity};
 use obverse_isa::{FunctionId, LocalId, Type};
 use obverse_syntax::ast::{self, IoOperation, Name, Sequence};
 use obverse_syntax::codes::Code;
@@ -190,12 +191,38 @@ impl<'s> Checker<'s> {
 
     fn warn_unreached(&mut self, unreached: Span, block: &Block) {
         let message = "this and what follows it in the block is never reached";
-        let mut diagnostic = warning(Code::Unreachable, unreached, message, "never reached")
-            .with_help("leave it out");
-        if let Some(last) = block.statements.last() {
-            diagnostic = diagnostic.with_label(last.span, "this never goes on");
+        let diagnostic = warning(Code::Unreachable, unreached, message, "never reached");
+        self.reports.add(match block.statements.last() {
+            Some(last) => {
+                let (why, help) = self.why_it_ends(&last.kind);
+                diagnostic.with_label(last.span, why).with_help(help)
+            }
+            None => diagnostic.with_help("leave it out"),
+        });
+    }
+
+    /// What happens in place of the next statement, and what to do about that.
+    fn why_it_ends(&self, last: &StatementKind) -> (&'static str, &'static str) {
+        let leave_out = "leave it out";
+        match last {
+            StatementKind::Return => ("the sequence ends here", leave_out),
+            StatementKind::Break => ("the loop is left here", leave_out),
+            StatementKind::Loop(_) => {
+                let help = "leave it out, or leave the loop by `break`";
+                ("no `break` leads out of this loop", help)
+            }
+            StatementKind::Throw(error) => {
+                let declared = self.module.errors.get(error.index());
+                let why = declared.map_or("an error is raised here", after_throw);
+                match declared.map(response) {
+                    Some(Response::Recover { .. }) => {
+                        (why, "leave it out, or let the error say `then continue`")
+                    }
+                    _ => (why, leave_out),
+                }
+            }
+            _ => ("no way through this leads on", leave_out),
         }
-        self.reports.add(diagnostic);
     }
 
     /// What stands before a block.
@@ -218,6 +245,26 @@ impl<'s> Checker<'s> {
             Meaning::Sequence(id) | Meaning::Action(id) => Some(id),
             _ => None,
         }
+    }
+}
+
+/// What a `throw` leads to, where that is not the next statement.
+fn after_throw(error: &ErrorDeclaration) -> &'static str {
+    match response(error) {
+        _ if error.severity == Severity::Fatal => "the program stops here",
+        _ if matches!(error.recovery, Recovery::Reversing(_)) => {
+            "from here the program goes back, and on again from there"
+        }
+        Response::Recover { then: Continuation::Action, .. } => {
+            "once recovered from, this is thrown again: it is the action that failed"
+        }
+        Response::Recover { then: Continuation::Sequence, .. } => {
+            "once this is recovered from, the sequence begins again"
+        }
+        Response::Recover { then: Continuation::Program, .. } => {
+            "once this is recovered from, the program begins again"
+        }
+        Response::Recover { .. } | Response::Stop | Response::Ignore => "the program stops here",
     }
 }
 

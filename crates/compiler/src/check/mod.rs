@@ -39,6 +39,9 @@ use std::collections::{BTreeSet, HashMap};
 
 pub(crate) use program::check;
 
+/// More names than these are not listed where none of them is near the one that is written.
+const MAX_LISTED: usize = 6;
+
 /// What a caller knows of a function.
 #[derive(Clone, Debug, Default)]
 struct Signature {
@@ -110,7 +113,8 @@ impl<'s> Checker<'s> {
             let message = format!("the name `{}` is given twice", name.value);
             let diagnostic =
                 Diagnostic::error(Code::DuplicateName, name.span, message, "given again here")
-                    .with_label(first, format!("it is {kind} already, named here"));
+                    .with_label(first, format!("it is {kind} already, named here"))
+                    .with_help("give one of them another name");
             self.reports.add(diagnostic);
             self.names.mark_used(name.value);
         }
@@ -177,6 +181,13 @@ impl<'s> Checker<'s> {
         if let Some(meant) = meant {
             diagnostic = diagnostic.did_you_mean(name.span, meant);
             self.names.mark_used(meant);
+        } else if !self.reports.is_full() {
+            let there = self.names.candidates(wanted).take(MAX_LISTED + 1);
+            let there: Vec<String> = there.map(|name| format!("`{name}`")).collect();
+            if (1..=MAX_LISTED).contains(&there.len()) {
+                let verb = if there.len() == 1 { "is" } else { "are" };
+                diagnostic = diagnostic.with_note(format!("there {verb} {}", there.join(", ")));
+            }
         }
         self.reports.add(diagnostic);
     }

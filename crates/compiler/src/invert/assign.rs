@@ -59,7 +59,7 @@ impl<'p> Inverter<'p> {
         self.refuse(match first_use {
             Some(first) => diagnostic
                 .with_label(first, "first used here")
-                .with_help("declare it right before that: then its inverse has one meaning"),
+                .with_help("move the declaration to right before that"),
             None => diagnostic.with_help("leave it out: nothing uses it"),
         });
     }
@@ -102,8 +102,8 @@ impl<'p> Inverter<'p> {
 
     fn refuse_unknown_end(&mut self, variable: &VariableDeclaration<'p>, changed: Option<Span>) {
         let name = variable.name.value;
-        let message = format!("what `{name}` is in the end is not known");
-        let why = "the inverse begins with the value that this has in the end";
+        let message = format!("what `{name}` is at its end is not known");
+        let why = "the inverse begins with the value that this ends with";
         let mut diagnostic = refusal(variable.span, &message, why);
         if let Some(span) = changed {
             diagnostic = diagnostic.with_label(span, "it may change here");
@@ -137,8 +137,8 @@ impl<'p> Inverter<'p> {
             AssignOperator::Subtract => AssignOperator::Add,
         };
         if walk::names_of(value).contains(&name.value) {
-            let message = "an update by itself has no inverse";
-            let why = format!("this is not known when `{}` has changed", name.value);
+            let message = "a variable that is updated by its own value has no inverse";
+            let why = format!("once `{}` has changed, this is no longer known", name.value);
             self.refuse(
                 refusal(value.span, message, &why)
                     .with_help("keep the amount in a variable, and update by that"),
@@ -164,7 +164,7 @@ impl<'p> Inverter<'p> {
                 let message = format!("what `{}` was before is not known", name.value);
                 let why = "this overwrites a value that the inverse would need";
                 self.refuse(refusal(span, &message, why).with_help(
-                    "add to it or subtract from it; or have both values be written out",
+                    "use `+=` or `-=`, or assign what is written out as a number, here and before",
                 ));
                 None
             }

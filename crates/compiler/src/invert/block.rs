@@ -358,12 +358,12 @@ fn never(statement: &Statement<'_>) -> Diagnostic {
         ),
         StatementKind::Remember(_) => (
             "a remembered position has no inverse",
-            "where this is, is not known before it is run",
+            "where the arm is here is only known when the program runs",
             "name the place with `joints`",
         ),
         StatementKind::Loop(_) => (
             "a loop without a condition has no inverse",
-            "an inverse would not know how often it has come round",
+            "an inverse would not know how often it went round",
             "count it by `repeat` or `for`",
         ),
         StatementKind::Break | StatementKind::Return => (
@@ -372,13 +372,13 @@ fn never(statement: &Statement<'_>) -> Diagnostic {
             "use `if .. else ..`, or `while .. entered when ..`",
         ),
         StatementKind::Speed { .. } | StatementKind::Tool { .. } => (
-            "a setting from the middle of a sequence on has no inverse",
+            "a setting that begins in the middle of a sequence has no inverse",
             "what it was before is not known",
             "give it a block, or set it where the sequence begins",
         ),
         StatementKind::WithInReverse { .. } => (
             "a block that is gone back over otherwise than it came has no inverse",
-            "no words say of an inverse what it was going forward",
+            "an inverse has no words for how this was done going forward",
             "leave the parameters out, or give them to the inverse by hand",
         ),
         StatementKind::Barrier(_) | StatementKind::Irreversible { .. } => (
@@ -387,9 +387,9 @@ fn never(statement: &Statement<'_>) -> Diagnostic {
             "invert what is before it and what is after it by themselves",
         ),
         _ => (
-            "an error that is thrown has no inverse",
-            "what follows is not known",
-            "check before, and leave it out of the sequence",
+            "a `throw` has no inverse",
+            "what follows depends on how the error is recovered from",
+            "check what it is thrown for before the sequence, and leave it out of this one",
         ),
     };
     let reason = match &statement.kind {

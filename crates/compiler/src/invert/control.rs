@@ -51,7 +51,7 @@ impl<'p> Inverter<'p> {
 
     fn refuse_open_loop(&mut self, condition: Span) {
         let message = "a loop without `entered when` has no inverse";
-        let why = "an inverse would not know how often it has come round";
+        let why = "an inverse would not know how often it went round";
         self.refuse(refusal(condition, message, why).with_help(
             "say what holds when it is first entered alone: `while n != 3 entered when n == 0`",
         ));
@@ -73,8 +73,10 @@ impl<'p> Inverter<'p> {
         self.facts = facts;
         let after_then = std::mem::replace(&mut self.arm, arm);
         let otherwise = otherwise.map(|block| self.block(block));
-        if !after_then.is_same(&self.arm) {
-            self.arm = Arm::lost("two ways that end elsewhere join after this", span);
+        if after_then.is_refused() {
+            self.arm = after_then;
+        } else if !self.arm.is_refused() && !after_then.is_same(&self.arm) {
+            self.arm = Arm::lost("two ways that end in different places join after this", span);
         }
         let (condition, ending_when) = match ending_when {
             Some(assertion) => (assertion, Some(condition.clone())),
@@ -130,7 +132,7 @@ impl<'p> Inverter<'p> {
                 let message = "a loop that ends elsewhere than it begins has no inverse";
                 let why = "each time round this comes from another place";
                 self.refuse(refusal(first, message, why).with_help(
-                    "move before the loop to where its body ends, so that it begins there each \
+                    "move to where its body ends before the loop, so that it begins there each \
                      time",
                 ));
             }

@@ -53,18 +53,18 @@ impl<'p> Inverter<'p> {
     pub(super) fn refuse_unnamed(&mut self, span: Span, why: &str) {
         let message = "the arm leaves a place without a name here";
         let diagnostic = refusal(span, message, why);
-        let named = "name the place by `joints` or a keyframe and move there first";
+        let named = "name the place by `joints` or a keyframe, and move there before this";
         self.refuse(match (self.arm.shifts.last(), &self.arm.base) {
             (_, Base::Refused) => return,
             (Some(shift), _) => diagnostic
                 .with_label(shift.span, "this leads to a place without a name")
-                .with_help(format!("{named}; or go back over the same way before")),
+                .with_help(format!("{named}; or move back by the same distance")),
             (None, Base::Start) => diagnostic
-                .with_note("where the arm is when the sequence begins is not known in it")
+                .with_note("where the arm is when a sequence begins, the sequence does not know")
                 .with_help("begin the sequence with a move to a place with a name"),
             (None, Base::Named(spot)) => diagnostic
-                .with_note(format!("`{}` is where another tool is", spot.text()))
-                .with_help("name the place by `joints`, or move there with this tool first"),
+                .with_note(format!("the arm came to `{}` with another tool", spot.text()))
+                .with_help("name the place by `joints`, or move there with this tool before this"),
             (None, Base::Lost(why, lost)) => diagnostic.with_label(*lost, *why).with_help(named),
         });
     }

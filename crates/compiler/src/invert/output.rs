@@ -54,8 +54,8 @@ impl<'p> Inverter<'p> {
             diagnostic = diagnostic.with_label(set, "set here");
         }
         self.refuse(diagnostic.with_help(
-            "set it before the first move of the sequence, or name a counterpart: `io NAME { .. } \
-             reverse OTHER`",
+            "set it before the first move of the sequence, or give it a counterpart: `io NAME { \
+             .. } reverse OTHER`",
         ));
     }
 
@@ -91,8 +91,8 @@ impl<'p> Inverter<'p> {
         }
         let message = format!("`{}` is not the counterpart of its counterpart", name.value);
         let (at, why) = match back {
-            Some(back) => (back.span, "its counterpart is this"),
-            None => (other_name.span, "it has none"),
+            Some(back) => (back.span, "its own counterpart is this"),
+            None => (other_name.span, "this has no counterpart"),
         };
         self.refuse(
             refusal(span, &message, "the inverse of its inverse would be another")

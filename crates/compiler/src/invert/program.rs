@@ -106,7 +106,7 @@ impl<'s> Plan<'s> {
             let (order, again) = plan.after_callees(&[root], inverted_calls);
             if let Some(again) = again {
                 let message = "a sequence that calls itself has no inverse";
-                let why = "it is under way already";
+                let why = "this leads back into a sequence that is under way";
                 let help = "write the repetition as a loop";
                 return Err(vec![refusal(again, message, why).with_help(help)]);
             }

@@ -73,7 +73,7 @@ impl<'p> Inverter<'p> {
             Some(there) => self.arm = Arm::at(there),
             None => {
                 let message = "where these blocks end has no name";
-                let why = "a block that moves the arm is here";
+                let why = "this moves the arm";
                 self.refuse(
                     refusal(motion, message, why)
                         .with_label(replacement.span, "this does not end where the first begins")
@@ -105,11 +105,13 @@ impl<'p> Inverter<'p> {
             });
         }
         if let Some(assignment) = first {
-            let message = "a variable that is changed in such a block has no inverse";
-            let why = "going back restores it, and the inverse would not";
+            let message =
+                "a variable that is changed in a block with its own reverse has no inverse";
+            let why = "going back restores the variable, and the inverse would not";
+            let opening = Span::new(block.span.start, block.span.start + 1);
             self.refuse(
                 refusal(assignment, message, why)
-                    .with_label(block.span, "the block has a reverse of its own")
+                    .with_label(opening, "the block begins here")
                     .with_help("change it outside of the block"),
             );
         }

@@ -92,7 +92,7 @@ sequence main { fork { toggle 1 } and { call long_way call feed } }";
         [
             "branch 2 calls `feed`",
             "branch 1 uses output 1",
-            "`feed` recovers by `clear`",
+            "`feed` recovers using `clear`",
             "`clear` uses output 1 for branch 2",
             "the fork begins here",
         ]
@@ -105,12 +105,15 @@ fn what_is_run_in_reverse_counts() {
 io on { set 1 high } reverse off
 io off { set 2 low }
 sequence main { fork { io on } and { toggle 2 } }";
-    assert_eq!(reasons(source)[1], "branch 1 runs in reverse `off`");
+    assert_eq!(reasons(source)[1], "branch 1 takes this back by `off`");
     let source =
         "sequence main { fork { do { toggle 1 } in reverse { toggle 2 } } and { toggle 2 } }";
     assert_eq!(
         reasons(source)[1..3],
-        ["branch 1 runs in reverse this block", "this block uses output 2 for branch 1"]
+        [
+            "branch 1 takes this back by the block in reverse",
+            "the block in reverse uses output 2 for branch 1"
+        ]
     );
 }
 

@@ -125,7 +125,7 @@ fn updates_are_taken_back() {
         &["x = 3", "move to a", "x = 5", "x += 2", "x = 1"],
         &["x = 1", "move to a", "x = 7", "x -= 2", "x = 3"],
     );
-    refused("x += x", "an update by itself");
+    refused("x += x", "updated by its own value");
     refused("x = 5", "what `x` was before");
     refused("x = 3\nmove to a\nx = y", "what `x` was before");
 }
@@ -137,7 +137,7 @@ fn variables_begin_with_what_they_end_with() {
         &["var n = 2", "while n != 0 entered when n == 2 { n -= 1 }"],
     );
     becomes(&["var m = y * 2", "x += m"], &["var m = y * 2", "x -= m"]);
-    refused("var m = y * 2\ny += m", "what `m` is in the end");
+    refused("var m = y * 2\ny += m", "what `m` is at its end");
     refused("var m = 1\nwait 1 s\nx += m", "declared before it is needed");
     refused("var m = 1\nwait 1 s", "declared before it is needed");
 }

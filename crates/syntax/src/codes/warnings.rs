@@ -11,8 +11,10 @@ macro_rules! warnings {
         wrong "sequence main { var count = 0 count += 1 }"
         right "sequence main { var count = 0 count += 1 if count > 0 { wait 1 s } }"
     Unreachable "W0002" "statements that are never reached"
-        why "After `return`, `break`, an error that is not continued from, or a loop without a way \
-             out, nothing in the same block is run. Such statements are left out of the module."
+        why "After `return`, `break` and a loop without a way out nothing in the same block is \
+             run, nor after a `throw` whose error is not continued from: it stops the program, or \
+             leads back to something that is done again. Such statements are left out of the \
+             module."
         wrong "sequence main { return wait 1 s }"
         right "sequence main { wait 1 s return }"
     IntegerDivision "W0003" "a division of integers that loses its remainder"

@@ -1,6 +1,7 @@
 //! What an effect outside the hot loops may touch: operands, the frame, settings, the workcell.
 //! It sees neither the tape nor the program counter.
 
+use crate::alter::Alteration;
 use crate::link::Links;
 use crate::stop::TrapKind;
 use crate::values::{Settings, Slots};
@@ -21,6 +22,10 @@ pub(crate) struct Acts<'a> {
     pub(crate) cell: &'a mut dyn Workcell,
     /// See [`Pending::level_before`](crate::state::Pending::level_before).
     pub(crate) level_before: Option<bool>,
+    /// The instruction.
+    pub(crate) pc: u32,
+    /// What is done otherwise than the program says.
+    pub(crate) alteration: Option<&'a Alteration>,
     /// What came of the motion that the effect made.
     pub(crate) report: Option<MotionReport>,
 }

@@ -18,6 +18,16 @@ impl Always<Acts<'_>> for op::ErrorRaise {
     }
 }
 
+impl Always<Acts<'_>> for op::ErrorDue {
+    fn forward(self, _: &mut Acts<'_>) -> Result<(), Failure> {
+        Ok(())
+    }
+
+    fn reverse(self, _: &mut Acts<'_>) -> Result<(), Failure> {
+        Ok(())
+    }
+}
+
 /// Stands on the tape where an error that was cleared was not pending.
 const NOWHERE: u64 = u64::MAX;
 

@@ -6,6 +6,7 @@
 //! had, unless the settings for going back say otherwise.
 
 use super::acts::Acts;
+use crate::alter::Alteration;
 use crate::class::{AfterForward, Always, Failure};
 use crate::convert::{axis, frame, path};
 use crate::stop::TrapKind;
@@ -17,8 +18,23 @@ use obverse_workcell::{Fault, Goal, Motion, MotionEnd, Path};
 impl Acts<'_> {
     fn go(&mut self, goal: Goal, path: Path, force_limit_n: Option<f64>) -> Result<(), Failure> {
         let motion = Motion { goal, path, speed: self.speed()?, tool: self.tool(), force_limit_n };
+        let motion = match self.alteration {
+            Some(alteration) => self.altered(alteration, motion)?,
+            None => motion,
+        };
         self.report = Some(self.cell.execute(&motion)?);
         Ok(())
+    }
+
+    /// The motion to make instead, once what is done before it has been.
+    fn altered(&mut self, alteration: &Alteration, motion: Motion) -> Result<Motion, Failure> {
+        let (before, mut motion) = alteration.of(self.pc, motion);
+        let Some(before) = before else { return Ok(motion) };
+        self.cell.execute(&before)?;
+        if let Goal::Displaced { from, .. } = &mut motion.goal {
+            *from = self.cell.joints();
+        }
+        Ok(motion)
     }
 
     /// Go back, as the settings for that say. Here a force that stops the motion is a fault: the

@@ -1,0 +1,276 @@
+//! Recoveries at the edge: the strategy that was asked for, the memory on disk, a person at the
+//! terminal, and the story of a recovery in words and for machines.
+
+use crate::problem::Problem;
+use crate::report::{self, Report};
+use crate::story::{self, Story};
+use crate::{files, write};
+use obverse_bytecode::Module;
+use obverse_recovery::{Incident, Memory, Operator, Outcome, Step, Strategy, Teller, Why};
+use obverse_vm::Alteration;
+use obverse_workcell::{Fault, Workcell};
+use serde_json::{Value, json};
+use std::io::{self, BufRead, IsTerminal, Write};
+use std::path::{Path, PathBuf};
+
+/// What a command that runs a program is told of recoveries.
+#[derive(clap::Args)]
+pub(crate) struct RecoveryArguments {
+    /// How errors are recovered from whose recovery is reversal: declared, stop, retry, back-up,
+    /// restart, explicit, fixed:N, escalating, learned.
+    #[arg(long, default_value = "declared", value_name = "STRATEGY", value_parser = strategy)]
+    pub(crate) strategy: Strategy,
+    /// What is learned of how far to go back, kept from run to run in a file that can be read.
+    #[arg(long, value_name = "FILE")]
+    pub(crate) memory: Option<PathBuf>,
+    /// How often a stopped arm is released without asking: the fresh command that it waits for.
+    #[arg(long, default_value_t = 0, value_name = "N")]
+    pub(crate) release: u32,
+}
+
+fn strategy(text: &str) -> Result<Strategy, String> {
+    match Strategy::from_name(text) {
+        Some(Strategy::Oracle) => {
+            Err("only `obverse trials` knows what will come of going back".to_owned())
+        }
+        Some(strategy) => Ok(strategy),
+        None => Err("say declared, stop, retry, back-up, restart, explicit, fixed:N, escalating \
+                     or learned"
+            .to_owned()),
+    }
+}
+
+/// The memory of a file; an empty one where there is no file yet, or none was named.
+///
+/// # Errors
+/// The file cannot be read, or is none.
+pub(crate) fn memory(path: Option<&Path>) -> Result<Memory, Problem> {
+    match path {
+        Some(path) if path.exists() => {
+            let cannot = |why: String| Problem::of_file(path, why);
+            let bytes = files::read(path).map_err(cannot)?;
+            let text = String::from_utf8(bytes);
+            let text = text.map_err(|_| cannot("this is no text".to_owned()))?;
+            Memory::from_text(&text).map_err(|error| Problem::of_file(path, error))
+        }
+        _ => Ok(Memory::default()),
+    }
+}
+
+/// Keep a memory.
+///
+/// # Errors
+/// The file cannot be written; what was there is there still.
+pub(crate) fn keep(memory: &Memory, path: Option<&Path>) -> Result<(), Problem> {
+    path.map_or(Ok(()), |path| write::file(path, memory.to_text().as_bytes()))
+}
+
+/// The person at the terminal, if there is one, or so many releases given beforehand.
+pub(crate) struct Terminal {
+    releases_left: u32,
+    asks: bool,
+}
+
+impl Terminal {
+    pub(crate) fn new(releases: u32, is_json: bool) -> Self {
+        let asks = !is_json && io::stdin().is_terminal() && io::stdout().is_terminal();
+        Self { releases_left: releases, asks }
+    }
+}
+
+impl Operator for Terminal {
+    fn release(&mut self, fault: &Fault) -> bool {
+        if self.releases_left > 0 {
+            self.releases_left -= 1;
+            return true;
+        }
+        if !self.asks {
+            return false;
+        }
+        write::line(&format!("the arm is held: {fault}"));
+        write::out("release it? Write `release` to let it move again: ");
+        let _ = io::stdout().flush();
+        let mut answer = String::new();
+        let is_read = io::stdin().lock().read_line(&mut answer).is_ok();
+        is_read && answer.trim() == "release"
+    }
+}
+
+impl Teller for Story<'_> {
+    fn on_step(&mut self, step: &Step<'_>, cell: &dyn Workcell) {
+        self.tell_headings();
+        let text = words(self.module(), step);
+        write::line(&format!("{:>7.2} s ! {text}", cell.now_s()));
+    }
+}
+
+impl Teller for Report<'_> {
+    fn on_step(&mut self, step: &Step<'_>, cell: &dyn Workcell) {
+        let mut object = json!({
+            "type": "recovery",
+            "step": code(step),
+            "text": words(self.module(), step),
+            "time_s": cell.now_s(),
+        });
+        for (key, value) in details(self.module(), step) {
+            object[key] = value;
+        }
+        write::line(&object.to_string());
+    }
+}
+
+fn code(step: &Step<'_>) -> &'static str {
+    match step {
+        Step::Fault { .. } => "fault",
+        Step::Released => "released",
+        Step::Back { .. } => "back",
+        Step::RoundTrip { .. } => "round_trip",
+        Step::InPlace { .. } => "in_place",
+        Step::Blocked { .. } => "blocked",
+        Step::Again { .. } => "again",
+        Step::Recovered { .. } => "recovered",
+        Step::GivenUp { .. } => "given_up",
+    }
+}
+
+fn details(module: &Module, step: &Step<'_>) -> Vec<(&'static str, Value)> {
+    let mut details = match step {
+        Step::Fault { fault, pc, error } => vec![
+            ("fault", json!(fault.kind().code())),
+            ("error", json!(module.errors[error.index()].name)),
+            ("at", report::place(module, Some(*pc))),
+        ],
+        Step::Back { actions, to, .. } => {
+            vec![("actions", json!(actions)), ("to", report::place(module, Some(*to)))]
+        }
+        Step::RoundTrip { pc, .. } => vec![("at", report::place(module, Some(*pc)))],
+        Step::InPlace { backed_up_m, .. } => vec![("backed_up_m", json!(backed_up_m))],
+        Step::Blocked { fault, pc, .. } => {
+            vec![("fault", json!(fault.kind().code())), ("at", report::place(module, Some(*pc)))]
+        }
+        Step::GivenUp { why, .. } => vec![("why", json!(why.code()))],
+        Step::Again { change: Some(change), .. } => vec![("change", json!(changed(*change)))],
+        Step::Again { .. } | Step::Released | Step::Recovered { .. } => Vec::new(),
+    };
+    let incident = match step {
+        Step::Back { incident, .. }
+        | Step::RoundTrip { incident, .. }
+        | Step::InPlace { incident, .. }
+        | Step::Blocked { incident, .. }
+        | Step::Again { incident, .. }
+        | Step::Recovered { incident }
+        | Step::GivenUp { incident, .. } => incident,
+        Step::Fault { .. } | Step::Released => return details,
+    };
+    details.push(("error", json!(name(module, incident))));
+    details.push(("place", json!(incident.place)));
+    details.push(("attempts", json!(incident.attempts.len())));
+    details.push(("due", report::place(module, Some(incident.pc))));
+    details
+}
+
+fn name<'m>(module: &'m Module, incident: &Incident) -> &'m str {
+    &module.errors[incident.error.index()].name
+}
+
+/// A step of a recovery in words.
+fn words(module: &Module, step: &Step<'_>) -> String {
+    match step {
+        Step::Fault { fault, pc, error } => {
+            let error = &module.errors[error.index()].name;
+            format!("{} is error {error}: {fault}", report::line_of(module, *pc))
+        }
+        Step::Released => "released by hand".to_owned(),
+        Step::Back { incident, actions, to, why } => {
+            let to = format!("`{}` ({})", story::said(module, *to), report::line_of(module, *to));
+            let far = counted(*actions, "action");
+            format!("{}: back {far}, to {to}{}", name(module, incident), reason(*why))
+        }
+        Step::RoundTrip { pc, .. } => {
+            format!("`{}` ended where it began: nothing to undo", story::said(module, *pc))
+        }
+        Step::InPlace { incident, backed_up_m: None } => {
+            format!("{}: again from where the arm is", name(module, incident))
+        }
+        Step::InPlace { incident, backed_up_m: Some(distance_m) } => {
+            let far_mm = distance_m * 1e3;
+            format!("{}: back up {far_mm:.0} mm, and again", name(module, incident))
+        }
+        Step::Blocked { pc, fault, .. } => {
+            let place = report::line_of(module, *pc);
+            format!("the way back is blocked at {place}: {fault}")
+        }
+        Step::Again { incident, change } => {
+            let how = change.map(|change| format!(", {}", changed(change))).unwrap_or_default();
+            format!("forward again, attempt {}{how}", incident.attempts.len())
+        }
+        Step::Recovered { incident } => {
+            let tried = counted(incident.attempts.len(), "attempt");
+            let took_s = incident.duration_s().unwrap_or(0.0);
+            let far = incident.depth_enough().filter(|&actions| actions > 0);
+            let far = far.map(|actions| format!(", {} back", counted(actions, "action")));
+            let far = far.unwrap_or_default();
+            format!("past {} after {tried}{far}, {took_s:.2} s", name(module, incident))
+        }
+        Step::GivenUp { incident, why } => {
+            format!("{} is given up: {why}", name(module, incident))
+        }
+    }
+}
+
+fn reason(why: Why) -> String {
+    match why {
+        Why::Said | Why::Place => String::new(),
+        Why::Further => ", further than before".to_owned(),
+        Why::Learned { known: 0, chance, .. } => {
+            format!(": nothing is known here yet, and {:.0} % believed", chance * 1e2)
+        }
+        Why::Learned { chance, expected_s, known } => format!(
+            ": enough with {:.0} %, {expected_s:.1} s expected, from {}",
+            chance * 1e2,
+            counted(known as usize, "incident")
+        ),
+        Why::AsFarAsPossible => ", as far as can be taken back".to_owned(),
+        Why::Foreseen => ", which will be enough".to_owned(),
+    }
+}
+
+/// What is done otherwise, in words.
+fn changed(change: Alteration) -> String {
+    let mut parts = Vec::new();
+    if let Some(aside) = change.aside {
+        let [x, y] = aside.by_m;
+        parts.push(format!("{:.2} mm aside", x.hypot(y) * 1e3));
+    }
+    if change.slower > 0 {
+        parts.push("slower".to_owned());
+    }
+    if let Some(factor) = change.force_factor {
+        parts.push(format!("with {:.0} % of the force", factor * 1e2));
+    }
+    parts.join(", ")
+}
+
+fn counted(count: usize, what: &str) -> String {
+    if count == 1 { format!("1 {what}") } else { format!("{count} {what}s") }
+}
+
+/// The incidents of a run for machines.
+pub(crate) fn incidents(module: &Module, incidents: &[Incident]) -> Value {
+    let incident = |incident: &Incident| {
+        let outcome = match incident.outcome {
+            Some((Outcome::Recovered, _)) => "recovered",
+            Some((Outcome::GivenUp(why), _)) => why.code(),
+            None => "open",
+        };
+        json!({
+            "error": name(module, incident),
+            "place": incident.place,
+            "outcome": outcome,
+            "depths": incident.depths(),
+            "began_s": incident.began_s,
+            "duration_s": incident.duration_s(),
+        })
+    };
+    incidents.iter().map(incident).collect()
+}

@@ -1,0 +1,37 @@
+//! A run that goes on from every error as the code says, and never goes back by itself.
+
+use crate::ending::Ending;
+use obverse_vm::{Direction, Limits, Machine, Observer, Stop};
+use obverse_workcell::Workcell;
+
+/// Run a program in a direction until it ends.
+pub fn drive(
+    machine: &mut Machine<'_>,
+    direction: Direction,
+    limits: Limits,
+    cell: &mut dyn Workcell,
+    observer: &mut dyn Observer,
+) -> Ending {
+    let begin = machine.executed();
+    loop {
+        let left = limits.instructions.saturating_sub(machine.executed() - begin);
+        let stop = machine.run(direction, Limits::instructions(left), cell, observer);
+        if let Some(ending) = ending(stop, machine) {
+            return ending;
+        }
+    }
+}
+
+/// How a run ended that stopped; none if it goes on from there.
+pub(crate) fn ending(stop: Stop, machine: &Machine<'_>) -> Option<Ending> {
+    Some(match stop {
+        Stop::Raised { .. } | Stop::Due { .. } => return None,
+        Stop::Finished if machine.state().raised().is_empty() => Ending::Finished,
+        Stop::Finished => Ending::Unhandled(machine.state().raised().to_vec()),
+        Stop::AtStart | Stop::AtMark | Stop::OffMark => Ending::AtStart,
+        Stop::Budget => Ending::Budget,
+        Stop::Fault { fault, pc, direction } => Ending::Fault { fault, pc, direction },
+        Stop::Refused(refusal) => Ending::Refused(refusal),
+        Stop::Trap(trap) => Ending::Trap(trap),
+    })
+}

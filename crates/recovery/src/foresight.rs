@@ -1,0 +1,63 @@
+//! Who knows what will come of going back: tries every depth on a copy of the world.
+//!
+//! It is what other strategies are measured against, since it knows what only the world knows; no
+//! real cell has it.
+
+use crate::recover::{Foresight, Site};
+use crate::trail::Trail;
+use obverse_vm::{Direction, Event, Mark, Observer, Stop};
+use obverse_workcell::Workcell;
+
+/// The most depths that are tried.
+const DEPTHS_MAX: usize = 16;
+/// The most instructions that one try may take.
+const STEPS_MAX: u64 = 1_000_000;
+
+/// Knows the world that it is asked about, and all that chance has in store.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Clairvoyant;
+
+impl<C: Workcell + Clone> Foresight<C> for Clairvoyant {
+    fn depth(&mut self, site: &Site<'_, '_, C>) -> Option<usize> {
+        let depths = 1..=site.trail.actions().len().min(DEPTHS_MAX);
+        let times = depths.filter_map(|depth| Some((time_s(site, depth)?, depth)));
+        let best = times.min_by(|(one, _), (other, _)| one.total_cmp(other));
+        best.map(|(_, depth)| depth)
+    }
+}
+
+/// How long it would take to be past the error, going back so many actions, in seconds of the
+/// workcell's clock; none if it would not be got past.
+fn time_s<C: Workcell + Clone>(site: &Site<'_, '_, C>, depth: usize) -> Option<f64> {
+    let (mut machine, mut cell) = (site.machine.clone(), site.cell.clone());
+    let mut watch = Watch(site.trail.clone());
+    let actions = watch.0.actions();
+    let mark = Mark::at(actions[actions.len() - depth].steps);
+    let newest = actions.last().filter(|action| action.is_round_trip(&cell.joints()));
+    if let Some(action) = newest {
+        machine.unwind_to(Mark::at(action.steps), &mut cell).ok()?;
+    }
+    match machine.reverse_to(mark, &mut cell, &mut ()) {
+        Stop::AtMark | Stop::OffMark | Stop::AtStart => {}
+        _ => return None,
+    }
+    watch.0.cut(machine.state().steps());
+    machine.alter(site.change);
+    let allowed = machine.executed().saturating_add(STEPS_MAX);
+    while watch.0.count() <= site.incident.number + 1 && machine.executed() < allowed {
+        match machine.step(Direction::Forward, &mut cell, &mut watch) {
+            Ok(()) | Err(Stop::Raised { .. }) => {}
+            Err(Stop::Finished) if machine.state().raised().is_empty() => break,
+            Err(_) => return None,
+        }
+    }
+    Some(cell.now_s() - site.cell.now_s())
+}
+
+struct Watch<'m>(Trail<'m>);
+
+impl Observer for Watch<'_> {
+    fn on_event(&mut self, event: &Event, cell: &dyn Workcell) {
+        self.0.note(event, cell);
+    }
+}

@@ -1,0 +1,273 @@
+//! The trail of a run: where each action began, so that going back has somewhere to go.
+//!
+//! An action is what a recovery counts: a move, an advanced move, an I/O operation, a wait, a
+//! primitive, or the call of an `action`; sequences are transparent. The trail is kept from what
+//! the machine tells, and begins anew at what cannot be taken back. Knows nothing of errors.
+
+use obverse_bytecode::{ActionKind, FunctionKind, Module};
+use obverse_geometry::JointConfiguration;
+use obverse_isa::{CheckpointId, Class, FunctionId, Instr};
+use obverse_vm::{Direction, Event};
+use obverse_workcell::Workcell;
+
+/// An action that was begun.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Action {
+    /// How many instructions lay before it.
+    pub steps: u64,
+    /// The first of its instructions that was told of.
+    pub pc: u32,
+    /// When it began, in seconds of the workcell's clock.
+    pub began_s: f64,
+    /// Where the arm was when it began.
+    pub joints: JointConfiguration,
+    /// Whether nothing but motions of the arm has been commanded in it, outside of blocks with a
+    /// reverse of their own.
+    pub only_moves: bool,
+    /// How many actions of the run lie before it.
+    pub number: u64,
+    /// Its entry in the source map, by its first instruction.
+    pub entry: u32,
+    /// The last of its instructions that was told of.
+    last_pc: u32,
+    /// How many calls were under way around it.
+    pub depth: usize,
+    /// The branches that it belongs to.
+    branches: Vec<usize>,
+    /// How many instructions lay before its end, once it has come to it.
+    ended: Option<u64>,
+    /// Whether it is a call whose content belongs to it.
+    is_call: bool,
+    /// The last motion in it, and whether a force was to stop it.
+    motion: Option<(u32, bool)>,
+}
+
+impl Action {
+    /// The motion that it is about: the last that a force was to stop, or the last of all.
+    #[must_use]
+    pub fn motion(&self) -> Option<u32> {
+        self.motion.map(|(pc, _)| pc)
+    }
+
+    /// Whether it has led the arm back to where it began, so that in the world there is nothing to
+    /// take back.
+    #[must_use]
+    pub fn is_round_trip(&self, now: &JointConfiguration) -> bool {
+        self.only_moves && self.motion.is_some() && self.joints.same_bits(now)
+    }
+
+    fn note_act(&mut self, event: &Event) {
+        let is_motion = event.report.is_some();
+        let acts = event.instr.info().family.commands_workcell();
+        self.only_moves &= event.open_blocks == 0 && (is_motion || !acts);
+        let is_guarded =
+            matches!(event.instr, Instr::MoveGuarded { .. } | Instr::MoveGuardedOpposite { .. });
+        let was_guarded = self.motion.is_some_and(|(_, is_guarded)| is_guarded);
+        if event.report.is_some() && (is_guarded || !was_guarded) {
+            self.motion = Some((event.pc, is_guarded));
+        }
+    }
+}
+
+/// Something on the way other than an action.
+#[derive(Clone, Debug, PartialEq)]
+enum Post {
+    Checkpoint(CheckpointId),
+    /// A sequence began, with so many calls around its own.
+    Sequence {
+        depth: usize,
+        branches: Vec<usize>,
+    },
+}
+
+/// Where a run may be taken back to, newest last.
+#[derive(Clone, Debug)]
+pub struct Trail<'m> {
+    module: &'m Module,
+    actions: Vec<Action>,
+    posts: Vec<(u64, Post)>,
+    /// How many actions of the run are no longer on the trail.
+    dropped: u64,
+    never: Option<u32>,
+    /// When the last event was, in seconds.
+    now_s: f64,
+    /// Where the arm was then.
+    joints: JointConfiguration,
+    /// How far the arm has gone, in either direction, in metres.
+    way_m: f64,
+}
+
+impl<'m> Trail<'m> {
+    /// The trail of a run at its start, with the arm there.
+    #[must_use]
+    pub fn new(module: &'m Module, joints: JointConfiguration) -> Self {
+        Self {
+            joints,
+            module,
+            actions: Vec::new(),
+            posts: Vec::new(),
+            dropped: 0,
+            never: None,
+            now_s: 0.0,
+            way_m: 0.0,
+        }
+    }
+
+    /// The actions that can be taken back, newest last.
+    #[must_use]
+    pub fn actions(&self) -> &[Action] {
+        &self.actions
+    }
+
+    /// How many actions the run has begun, those included that it can no longer take back.
+    #[must_use]
+    pub fn count(&self) -> u64 {
+        self.dropped + self.actions.len() as u64
+    }
+
+    /// Whether the run has begun an action since the one of a number, other than that entry's, in
+    /// no more than so many calls; or has passed what cannot be taken back.
+    #[must_use]
+    pub fn is_past(&self, number: u64, entry: u32, depth: usize) -> bool {
+        let is_on = |action: &Action| {
+            action.number > number && action.entry != entry && action.depth <= depth
+        };
+        self.dropped > number || self.actions.iter().rev().any(is_on)
+    }
+
+    /// What stands in the way of going back further than the trail, if anything does.
+    #[must_use]
+    pub fn never(&self) -> Option<u32> {
+        self.never
+    }
+
+    /// How far the arm has gone, in either direction, in metres.
+    #[must_use]
+    pub fn way_m(&self) -> f64 {
+        self.way_m
+    }
+
+    /// How many actions lie between here and the newest passage of a checkpoint; none if it does
+    /// not lie on the trail.
+    #[must_use]
+    pub fn back_to_checkpoint(&self, checkpoint: CheckpointId) -> Option<usize> {
+        let is_it = |post: &Post| matches!(post, Post::Checkpoint(passed) if *passed == checkpoint);
+        self.back_to(is_it)
+    }
+
+    /// How many actions the sequence has begun that the newest action is in; none if it began
+    /// before the trail.
+    #[must_use]
+    pub fn back_to_sequence(&self) -> Option<usize> {
+        let newest = self.actions.last()?;
+        self.back_to(|post| match post {
+            Post::Sequence { depth, branches } => {
+                *depth < newest.depth && newest.branches.starts_with(branches)
+            }
+            Post::Checkpoint(_) => false,
+        })
+    }
+
+    fn back_to(&self, is_it: impl Fn(&Post) -> bool) -> Option<usize> {
+        let (steps, _) = self.posts.iter().rev().find(|(_, post)| is_it(post))?;
+        Some(self.actions.len() - self.actions.partition_point(|action| action.steps < *steps))
+    }
+
+    /// Something happened; the workcell is as it was left.
+    pub fn note(&mut self, event: &Event, cell: &dyn Workcell) {
+        self.way_m += event.report.map_or(0.0, |report| report.distance_m);
+        if event.direction == Direction::Forward {
+            self.forward(event);
+        }
+        self.now_s = cell.now_s();
+        self.joints = cell.joints();
+    }
+
+    fn forward(&mut self, event: &Event) {
+        let is_never = matches!(event.instr.info().class, Class::Never(_));
+        if is_never && event.open_blocks == 0 {
+            self.dropped += self.actions.len() as u64;
+            self.actions.clear();
+            self.posts.clear();
+            self.never = Some(event.pc);
+            return;
+        }
+        let began = event.steps.saturating_sub(1 + u64::from(event.instr.prefix()));
+        match event.instr {
+            Instr::Checkpoint { checkpoint } => {
+                self.posts.push((began, Post::Checkpoint(checkpoint)));
+            }
+            Instr::Return {} => return self.end_call(event),
+            Instr::Call { function, .. } if self.is_transparent(function) => {
+                let depth = event.frames.saturating_sub(1);
+                let post = Post::Sequence { depth, branches: event.branches.clone() };
+                self.posts.push((began, post));
+            }
+            _ => self.act(event, began),
+        }
+    }
+
+    fn is_transparent(&self, function: FunctionId) -> bool {
+        let kind = self.module.functions.get(function.index()).map(|function| function.kind);
+        kind == Some(FunctionKind::Sequence)
+    }
+
+    fn act(&mut self, event: &Event, began: u64) {
+        let is_call = matches!(event.instr, Instr::Call { .. });
+        let depth = event.frames - usize::from(is_call);
+        let Some(entry) = self.module.source_at(event.pc) else { return };
+        let acts = is_call || event.instr.info().family.commands_workcell();
+        let is_action = entry.action.is_some_and(|kind| is_call || kind != ActionKind::Call);
+        let newest = self.actions.iter_mut().rev().find(|it| it.branches == event.branches);
+        if let Some(newest) = newest {
+            let is_within = newest.is_call && newest.ended.is_none() && depth > newest.depth;
+            let goes_on = !newest.is_call
+                && (newest.entry, newest.depth) == (entry.first, depth)
+                && newest.last_pc < event.pc;
+            if is_within || goes_on {
+                newest.last_pc = event.pc;
+                return newest.note_act(event);
+            }
+        }
+        if acts && is_action {
+            let mut action = Action {
+                steps: began,
+                pc: event.pc,
+                began_s: self.now_s,
+                joints: self.joints,
+                only_moves: true,
+                number: self.count(),
+                entry: entry.first,
+                last_pc: event.pc,
+                depth,
+                branches: event.branches.clone(),
+                ended: None,
+                is_call,
+                motion: None,
+            };
+            action.note_act(event);
+            self.actions.push(action);
+        }
+    }
+
+    fn end_call(&mut self, event: &Event) {
+        let ended = |action: &&mut Action| {
+            action.is_call && action.ended.is_none() && action.branches == event.branches
+        };
+        let newest = self.actions.iter_mut().rev().find(ended);
+        if let Some(action) = newest.filter(|action| action.depth == event.frames) {
+            action.ended = Some(event.steps);
+        }
+    }
+
+    /// The run was taken back to where so many instructions lay before it.
+    pub fn cut(&mut self, steps: u64) {
+        let left = self.actions.partition_point(|action| action.steps < steps);
+        self.actions.truncate(left);
+        for action in &mut self.actions {
+            action.ended = action.ended.filter(|ended| *ended <= steps);
+        }
+        let left = self.posts.partition_point(|(at, _)| *at < steps);
+        self.posts.truncate(left);
+    }
+}
