@@ -53,6 +53,7 @@ const PROGRAMS: &[Expected] = &[
     identical("screws.obv"),
     identical("sheets.obv"),
     identical("sorting.obv"),
+    identical("tidy.obv"),
     identical("tower.obv"),
     identical("warm_up.obv"),
 ];
@@ -179,6 +180,10 @@ fn the_language_is_shown() {
         ("reversal_policy.obv", "checkpoint"),
         ("press_fit.obv", "irreversible \""),
         ("press_fit.obv", "reversing up to checkpoint"),
+        ("tidy.obv", "on protective stop"),
+        ("tidy.obv", "else throw feeder_is_empty"),
+        ("tidy.obv", "give up after"),
+        ("tidy.obv", "cleanup {"),
         ("tower.obv", "keyframe"),
         ("handover.obv", "import \"handover/"),
         ("handover.obv", "set lamp high"),

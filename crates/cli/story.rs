@@ -234,6 +234,10 @@ fn forward_outcome(module: &Module, event: &Event, cell: &dyn Workcell) -> Optio
             };
             format!("error {}, {severity}", error.name)
         }
+        // Raised again at once, it is still there.
+        Instr::ErrorClear { error } if is_followed_by_raise(module, event.pc, error) => {
+            return None;
+        }
         Instr::ErrorClear { error } => dealt_with(module, error),
         _ => return event.report.map(|report| motion(event, &report)),
     })
@@ -262,6 +266,10 @@ fn waited_for(bit: u16, level: Level, cell: &dyn Workcell) -> String {
     } else {
         format!("input {bit} still {}: time is up", level_word(!level.is_high()))
     }
+}
+
+fn is_followed_by_raise(module: &Module, pc: u32, error: ErrorId) -> bool {
+    module.code.get(pc as usize + 1) == Some(&Instr::ErrorRaise { error })
 }
 
 fn dealt_with(module: &Module, error: ErrorId) -> String {

@@ -209,6 +209,7 @@ fn item_end(item: &Item<'_>) -> u32 {
         Item::AdvancedMove(guarded) => guarded.span.end,
         Item::Variable(variable) => variable.span.end,
         Item::Sequence(sequence) => sequence.span.end,
+        Item::Cleanup(cleanup) => cleanup.span.end,
         Item::Allow(allow) => allow.span.end,
     }
 }

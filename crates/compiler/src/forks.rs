@@ -230,6 +230,7 @@ impl Fork<'_> {
         let function = self.program.function(function);
         match function.kind {
             FunctionKind::Replacement => "the block in reverse".to_owned(),
+            FunctionKind::Cleanup => "the cleanup".to_owned(),
             _ => format!("`{}`", function.name),
         }
     }

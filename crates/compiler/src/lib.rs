@@ -10,6 +10,7 @@
 mod allow;
 mod check;
 mod effects;
+mod faults;
 mod fold;
 mod forks;
 mod invert;

@@ -60,6 +60,11 @@ pub(crate) fn check(
 /// By function: whether one can come to it from one of these.
 fn reached_from(program: &Program, mut to_visit: Vec<FunctionId>) -> Vec<bool> {
     let mut reached = vec![false; program.functions.len() + 1];
+    to_visit.extend(program.cleanup);
+    let raised = (0..).zip(&program.module.errors).filter(|(_, error)| !error.faults.is_empty());
+    for (error, _) in raised {
+        to_visit.extend(recoveries(program, ErrorId(error)).map(|(used, _)| used));
+    }
     let mut uses = Vec::new();
     while let Some(id) = to_visit.pop() {
         if id.index() == 0 || std::mem::replace(&mut reached[id.index()], true) {
@@ -77,8 +82,7 @@ type Use = (FunctionId, Option<Span>);
 fn uses_of(program: &Program, function: &Function, uses: &mut Vec<Use>) {
     match &function.body {
         Body::Guarded(guarded) => {
-            let thrown = [guarded.on_success.throws, guarded.on_failure.throws];
-            for (error, _) in thrown.into_iter().flatten() {
+            for (error, _) in guarded.throws() {
                 uses.extend(recoveries(program, error));
             }
         }
@@ -94,7 +98,9 @@ fn uses_of(program: &Program, function: &Function, uses: &mut Vec<Use>) {
                     uses.extend(counterpart.map(|used| (used, None)));
                 }
                 StatementKind::Reversed(_, Some(used)) => uses.push((*used, place)),
-                StatementKind::Throw(error) => uses.extend(recoveries(program, *error)),
+                StatementKind::Throw(error) | StatementKind::Requires(_, error) => {
+                    uses.extend(recoveries(program, *error));
+                }
                 _ => {}
             }
         }),

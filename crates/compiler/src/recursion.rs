@@ -59,7 +59,7 @@ fn may_leave(statement: &Statement, effects: &Effects) -> bool {
     let mut found = false;
     statement.each(&mut |one| {
         found |= match &one.kind {
-            StatementKind::Return | StatementKind::Throw(_) => true,
+            StatementKind::Return | StatementKind::Throw(_) | StatementKind::Requires(..) => true,
             StatementKind::Call(callee, _) | StatementKind::Advance(callee, _) => {
                 effects.leaves(*callee) || !effects.left_by(*callee).is_empty()
             }

@@ -41,6 +41,16 @@ pub(crate) fn response(error: &ErrorDeclaration) -> Response {
     }
 }
 
+/// How urgent it is to respond to an error: of several that are due at one place the least comes
+/// first, and of those alike the one that is declared first.
+pub(crate) fn urgency(error: &ErrorDeclaration) -> u8 {
+    match error.severity {
+        Severity::Fatal => 0,
+        Severity::Recoverable => 1,
+        Severity::Warning => 2,
+    }
+}
+
 /// Whether it is responded to where the sequence that raised it was called.
 pub(crate) fn is_for_caller(error: &ErrorDeclaration) -> bool {
     error.respond == Respond::AfterSequence

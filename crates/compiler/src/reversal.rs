@@ -80,8 +80,7 @@ fn check_replacement(
 /// An advanced move that takes another one's place in reverse throws nothing.
 fn check_opposite(function: &Function, reports: &mut Reports) {
     let Body::Guarded(guarded) = &function.body else { return };
-    let throws = [guarded.on_failure.throws, guarded.on_success.throws];
-    if let Some((_, place)) = throws.into_iter().flatten().next() {
+    if let Some((_, place)) = guarded.throws().next() {
         let message = "no error is responded to in reverse, and this raises one";
         reports.add(
             Diagnostic::error(Code::ErrorInReverse, place, message, "raises an error")
@@ -95,8 +94,8 @@ fn first_throw(function: &Function, effects: &Effects) -> Option<Span> {
     let mut first = None;
     block.each_statement(&mut |statement| {
         let throws = match &statement.kind {
-            StatementKind::Throw(_) => true,
-            StatementKind::Advance(guarded, _) => !effects.left_by(*guarded).is_empty(),
+            StatementKind::Throw(_) | StatementKind::Requires(..) => true,
+            StatementKind::Advance(guarded, _) => effects.may_fail(*guarded),
             _ => false,
         };
         if throws && first.is_none() {

@@ -22,6 +22,8 @@ pub(crate) struct Program {
     pub(crate) functions: Vec<Function>,
     /// The sequence that the program begins with.
     pub(crate) main: FunctionId,
+    /// What runs at its end.
+    pub(crate) cleanup: Option<FunctionId>,
 }
 
 impl Program {
@@ -304,6 +306,8 @@ pub(crate) enum StatementKind {
     Kept(FunctionId),
     /// Raise an error.
     Throw(ErrorId),
+    /// Raise an error unless a condition holds.
+    Requires(Expression, ErrorId),
 }
 
 /// Where a motion goes.
@@ -324,8 +328,8 @@ pub(crate) enum Motion {
 /// An advanced move.
 #[derive(Debug)]
 pub(crate) struct GuardedMove {
-    /// What must hold before, and the words for it.
-    pub(crate) requires: Option<(Prepared, ReasonId)>,
+    /// What must hold before, and what follows if it does not.
+    pub(crate) requires: Option<(Prepared, Unmet)>,
     /// How far, in metres.
     pub(crate) distance: Prepared,
     /// Which way.
@@ -352,6 +356,26 @@ pub(crate) struct GuardedMove {
     pub(crate) initial: Option<SlotId>,
     /// The places of distance, success and failure for the source map.
     pub(crate) spans: MoveSpans,
+}
+
+/// What follows if what an advanced move requires does not hold.
+#[derive(Clone, Copy, Debug)]
+pub(crate) enum Unmet {
+    /// The clause names an error.
+    Throws(ErrorId),
+    /// What failure throws is thrown; if it throws nothing, a trap with these words.
+    Fails(ReasonId),
+}
+
+impl GuardedMove {
+    /// The errors that it throws.
+    pub(crate) fn throws(&self) -> impl Iterator<Item = (ErrorId, Span)> {
+        let unmet = match &self.requires {
+            Some((condition, Unmet::Throws(error))) => Some((*error, condition.value.span)),
+            _ => None,
+        };
+        [self.on_success.throws, self.on_failure.throws, unmet].into_iter().flatten()
+    }
 }
 
 /// Where what an advanced move came to is kept.

@@ -8,8 +8,8 @@
 use crate::graph::{NOWHERE, NodeId};
 use crate::search::{Cost, Search, Way};
 use crate::{Horizon, Reach, is_never};
-use obverse_bytecode::{Extent, FunctionKind, Module, Recovery, Respond};
-use obverse_isa::Instr;
+use obverse_bytecode::{Extent, FaultName, FunctionKind, Module, Recovery, Respond};
+use obverse_isa::{ErrorId, Family, Instr};
 use std::collections::HashMap;
 
 /// The most shortfalls that are told of a module.
@@ -67,20 +67,50 @@ pub fn shortfalls(module: &Module) -> Vec<Shortfall> {
     let mut found = Vec::new();
     for (pc, instr) in (0_u32..).zip(&module.code) {
         let Instr::ErrorRaise { error } = *instr else { continue };
-        let declared = &module.errors[error.index()];
-        let Recovery::Reversing(policy) = &declared.recovery else { continue };
-        let begin = asked.begin(pc, declared.respond);
-        let kind = match policy.extent {
-            Extent::Actions(count) => asked.within_actions(&begin, count),
-            Extent::Sequence => asked.within_sequence(&begin),
-            Extent::Checkpoint(checkpoint) => asked.before_checkpoint(&begin, checkpoint),
-        };
-        found.extend(kind.map(|kind| Shortfall { raise: pc, error: error.0, kind }));
+        if !is_raised_again(module, pc, error) {
+            found.extend(asked.shortfall(pc, error));
+        }
+        if found.len() >= MAX_TOLD {
+            return found;
+        }
+    }
+    for (id, _) in (0..).zip(&module.errors).filter(|(_, error)| !error.faults.is_empty()) {
+        // Almost every act may raise it: the first place will do.
+        let acts = (0_u32..).zip(&module.code).filter(|(_, instr)| may_raise(module, id, instr));
+        let forward = acts.filter(|(pc, _)| !is_replacement(module, *pc));
+        found.extend({ forward }.find_map(|(pc, _)| asked.shortfall(pc, ErrorId(id))));
         if found.len() >= MAX_TOLD {
             break;
         }
     }
+    found.sort_by_key(|shortfall| shortfall.raise);
     found
+}
+
+/// Whether an error is raised here that was pending before a recovery, which has failed: what is
+/// to be said of it, has been where it was raised first.
+fn is_raised_again(module: &Module, pc: u32, error: ErrorId) -> bool {
+    let before = pc.checked_sub(1).and_then(|before| module.code.get(before as usize));
+    before == Some(&Instr::ErrorClear { error })
+}
+
+/// Whether a fault of an instruction may raise an error. Not every kind meets every fault.
+fn may_raise(module: &Module, error: u16, instr: &Instr) -> bool {
+    use FaultName::{EmergencyStop, Missing, ProtectiveStop};
+    let faults = &module.errors[usize::from(error)].faults;
+    match instr.info().family {
+        Family::Kinematic => !faults.is_empty(),
+        Family::Io => {
+            faults.iter().any(|fault| matches!(fault, EmergencyStop | Missing | ProtectiveStop))
+        }
+        _ => false,
+    }
+}
+
+/// Whether an instruction is run in reverse, where nothing is raised.
+fn is_replacement(module: &Module, pc: u32) -> bool {
+    let function = module.function_at(pc).map(|function| &module.functions[function]);
+    function.is_some_and(|function| function.kind == FunctionKind::Replacement)
 }
 
 /// How many actions begin up to each instruction.
@@ -137,6 +167,19 @@ struct Asked<'m> {
 }
 
 impl<'m> Asked<'m> {
+    /// What is in the way of the reversal that an error asks for that is raised here.
+    fn shortfall(&mut self, raise: u32, error: ErrorId) -> Option<Shortfall> {
+        let declared = &self.module.errors[error.index()];
+        let Recovery::Reversing(policy) = &declared.recovery else { return None };
+        let begin = self.begin(raise, declared.respond);
+        let kind = match policy.extent {
+            Extent::Actions(count) => self.within_actions(&begin, count),
+            Extent::Sequence => self.within_sequence(&begin),
+            Extent::Checkpoint(checkpoint) => self.before_checkpoint(&begin, checkpoint),
+        };
+        kind.map(|kind| Shortfall { raise, error: error.0, kind })
+    }
+
     /// Where going back begins for an error that is raised here: before these instructions.
     fn begin(&self, raise: u32, respond: Respond) -> Vec<u32> {
         let function = self.module.function_at(raise).unwrap_or(0);

@@ -39,8 +39,21 @@ pub enum Item<'s> {
     Variable(VariableDeclaration<'s>),
     /// `sequence main { … }`, or `action pick(part: item) { … }`
     Sequence(Sequence<'s>),
+    /// `cleanup { … }`
+    Cleanup(Cleanup<'s>),
     /// `allow W0001 "why"`: for the declaration that follows.
     Allow(Allow<'s>),
+}
+
+/// What is done at the end of the program, whatever came before.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Cleanup<'s> {
+    /// The word that begins it.
+    pub word: Span,
+    /// What is done.
+    pub body: Block<'s>,
+    /// The whole declaration.
+    pub span: Span,
 }
 
 /// A warning that is meant.
@@ -199,6 +212,73 @@ pub enum ErrorClause<'s> {
     Respond(Respond),
     /// `then …`: how to go on after recovery.
     Then(Continuation),
+    /// `on protective stop, collision`: the faults of the workcell that raise it.
+    On(Vec<Spanned<FaultWord>>),
+    /// `give up after 6 times, 90 s, 3 m`: what recovering from one incident may cost.
+    GiveUp(Vec<Bound<'s>>),
+}
+
+/// A fault of the workcell in words.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum FaultWord {
+    /// `joint limit`
+    JointLimit,
+    /// `out of reach`
+    OutOfReach,
+    /// `singularity`
+    Singularity,
+    /// `collision`
+    Collision,
+    /// `force limit`
+    ForceLimit,
+    /// `protective stop`
+    ProtectiveStop,
+    /// `emergency stop`
+    EmergencyStop,
+    /// `stopped short`
+    StoppedShort,
+    /// `missing`: the workcell has no such output, input, item or tool.
+    Missing,
+}
+
+impl FaultWord {
+    /// Every one.
+    pub const ALL: [Self; 9] = [
+        Self::JointLimit,
+        Self::OutOfReach,
+        Self::Singularity,
+        Self::Collision,
+        Self::ForceLimit,
+        Self::ProtectiveStop,
+        Self::EmergencyStop,
+        Self::StoppedShort,
+        Self::Missing,
+    ];
+
+    /// As it is written.
+    #[must_use]
+    pub fn text(self) -> &'static str {
+        match self {
+            Self::JointLimit => "joint limit",
+            Self::OutOfReach => "out of reach",
+            Self::Singularity => "singularity",
+            Self::Collision => "collision",
+            Self::ForceLimit => "force limit",
+            Self::ProtectiveStop => "protective stop",
+            Self::EmergencyStop => "emergency stop",
+            Self::StoppedShort => "stopped short",
+            Self::Missing => "missing",
+        }
+    }
+}
+
+/// A bound of what recovering from one incident may cost.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Bound<'s> {
+    /// `6 times`
+    Attempts(Spanned<u64>),
+    /// `90 s`, `3 m`: a time or a length, which its unit says.
+    Cost(Expression<'s>),
 }
 
 /// How bad an error is.
@@ -235,6 +315,8 @@ pub enum Depth {
     Fixed,
     /// `by reversing escalating up to 4 actions`
     Escalating,
+    /// `by reversing escalating doubling up to 8 actions`
+    Doubling,
     /// `by reversing learned up to 4 actions`
     Learned,
 }
@@ -253,8 +335,13 @@ pub enum Extent<'s> {
 /// What a recovery changes on the way forward again.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Change<'s> {
-    /// `perturbed 1 mm`
-    Perturbed(Expression<'s>),
+    /// `perturbed 1 mm`, `perturbed at random 1 mm`
+    Perturbed {
+        /// The largest sideways offset.
+        within: Expression<'s>,
+        /// Whether at random, instead of on a spiral.
+        at_random: bool,
+    },
     /// `slower`
     Slower,
     /// `lighter`
@@ -315,8 +402,14 @@ pub struct AdvancedMove<'s> {
 /// A clause of an advanced move.
 #[derive(Clone, Debug, PartialEq)]
 pub enum MoveClause<'s> {
-    /// `requires CONDITION`: must hold before the move (the paper's rule Acondition).
-    Requires(Expression<'s>),
+    /// `requires CONDITION else throw NAME`: must hold before the move (the paper's rule
+    /// Acondition).
+    Requires {
+        /// What must hold.
+        condition: Expression<'s>,
+        /// The error that is thrown if it does not.
+        otherwise: Option<Name<'s>>,
+    },
     /// `distance 300 mm forward in tcp` (rules Aspeci and Amove).
     Distance {
         /// How far.
@@ -612,6 +705,13 @@ pub enum StatementKind<'s> {
     },
     /// `throw NAME`
     Throw(Name<'s>),
+    /// `requires CONDITION else throw NAME`
+    Requires {
+        /// What must hold here.
+        condition: Expression<'s>,
+        /// The error that is thrown if it does not.
+        error: Name<'s>,
+    },
     /// `allow W0001 "why"`: for the statement that follows.
     Allow(Allow<'s>),
 }
@@ -653,6 +753,7 @@ macro_rules! blocks_of {
             | StatementKind::Checkpoint(_)
             | StatementKind::Barrier(_)
             | StatementKind::Throw(_)
+            | StatementKind::Requires { .. }
             | StatementKind::Allow(_) => Vec::new(),
         }
     };

@@ -163,6 +163,8 @@ const STATEMENTS: &[&str] = &[
     "advanced",
     "sequence",
     "action",
+    "cleanup",
+    "requires",
     "import",
     "output",
     "input",
@@ -205,7 +207,7 @@ const CATEGORIES: &[Category] = &[
         "a clause",
         "severity",
         "NAME",
-        &["severity", "recover", "otherwise", "respond", "then"],
+        &["severity", "recover", "otherwise", "respond", "then", "on", "give"],
     ),
     category(
         "a clause",

@@ -254,6 +254,7 @@ impl Mistake<'_> {
         let wants_block = self.expectation.allows("{") && !self.expectation.allows_statement();
         let is_statement = found.begins_statement()
             || matches!(found, Token::Assigned | Token::Speed | Token::Tool | Token::Position)
+            || found == Token::Requires
             || matches!(found, Token::Then | Token::Colon) && self.expectation.allows("or");
         if !wants_block || !is_statement {
             return None;

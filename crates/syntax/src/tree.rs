@@ -257,7 +257,13 @@ pub(crate) fn if_ending<'s>(
 
 /// Branches in their order.
 pub(crate) fn fork<'s>(first: Block<'s>, others: Vec<Block<'s>>) -> StatementKind<'s> {
-    StatementKind::Fork(std::iter::once(first).chain(others).collect())
+    StatementKind::Fork(first_and(first, others))
+}
+
+/// A list that has one element at the least.
+pub(crate) fn first_and<T>(first: T, mut others: Vec<T>) -> Vec<T> {
+    others.insert(0, first);
+    others
 }
 
 /// A block of one statement, for `else if`.
@@ -292,6 +298,7 @@ pub(crate) fn declaration_inside<'s>(sink: &Sink<'s>, item: Item<'s>, start: u32
         Item::AdvancedMove(advanced) => ("advanced move", advanced.name.span.end),
         Item::Variable(variable) => ("variable", variable.name.span.end),
         Item::Allow(allow) => ("allow", allow.span.end),
+        Item::Cleanup(cleanup) => ("cleanup", cleanup.word.end),
         Item::Sequence(sequence) if sequence.is_action => ("action", sequence.name.span.end),
         Item::Sequence(sequence) => ("sequence", sequence.name.span.end),
     };

@@ -88,6 +88,7 @@ fn name_of<'s>(item: &Item<'s>) -> Option<&'s str> {
     match item {
         Item::Cell(_) | Item::Import(_) | Item::Allow(_) => None,
         Item::Signal(entry) => Some(entry.name.value),
+        Item::Cleanup(_) => Some("cleanup"),
         Item::Io(io) => Some(io.name.value),
         Item::Joints(joints) => Some(joints.name.value),
         Item::ItemDeclaration(item) => Some(item.name.value),

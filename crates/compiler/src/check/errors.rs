@@ -10,7 +10,7 @@ use obverse_bytecode::{
     Reversal, Severity,
 };
 use obverse_isa::{CheckpointId, FunctionId};
-use obverse_syntax::ast::{self, Change, ErrorClause, Name};
+use obverse_syntax::ast::{self, Bound, Change, ErrorClause, FaultWord, Name};
 use obverse_syntax::codes::Code;
 use obverse_syntax::diagnostic::Diagnostic;
 use obverse_syntax::span::{Span, Spanned};
@@ -23,6 +23,8 @@ struct Clauses<'a, 's> {
     otherwise: Option<(&'a ast::Otherwise<'s>, Span)>,
     respond: Option<(ast::Respond, Span)>,
     then: Option<(ast::Continuation, Span)>,
+    on: Option<(&'a [Spanned<FaultWord>], Span)>,
+    give_up: Option<(&'a [Bound<'s>], Span)>,
 }
 
 /// An error of which only the name is known.
@@ -74,6 +76,11 @@ impl<'s> Checker<'s> {
             Some(ast::Respond::AfterSequence) => Respond::AfterSequence,
             Some(ast::Respond::AfterAction) | None => Respond::AfterAction,
         };
+        let faults = clauses.on.map_or(Vec::new(), |(words, _)| self.faults(words));
+        if !faults.is_empty() {
+            self.names.mark_used(declaration.name.value);
+        }
+        let bounds = clauses.give_up.map_or(Bounds::default(), |(bounds, _)| self.bounds(bounds));
         if let Found::Here(symbol) = self.names.find(declaration.name.value)
             && let Meaning::Error(id) = symbol.meaning
             && let Some(error) = self.module.errors.get_mut(id.index())
@@ -82,8 +89,8 @@ impl<'s> Checker<'s> {
             *error = obverse_bytecode::ErrorDeclaration {
                 name,
                 severity,
-                faults: Vec::new(),
-                bounds: Bounds::default(),
+                faults,
+                bounds,
                 recovery,
                 otherwise,
                 respond,
@@ -112,6 +119,10 @@ impl<'s> Checker<'s> {
                     ("respond", once(&mut clauses.respond, *respond, *span))
                 }
                 ErrorClause::Then(then) => ("then", once(&mut clauses.then, *then, *span)),
+                ErrorClause::On(words) => ("on", once(&mut clauses.on, words.as_slice(), *span)),
+                ErrorClause::GiveUp(bounds) => {
+                    ("give up", once(&mut clauses.give_up, bounds.as_slice(), *span))
+                }
             };
             if let (word, Some(first)) = first {
                 self.report_twice(word, *span, first);
@@ -132,6 +143,7 @@ impl<'s> Checker<'s> {
                            one for when reversing has been given up";
             self.report_contradiction(message, second, first);
         }
+        self.check_costs(clauses);
         let Some((severity, place)) = clauses.severity else { return };
         let message = match severity {
             Recoverable => return,
@@ -149,8 +161,25 @@ impl<'s> Checker<'s> {
             _ if severity == Fatal => None,
             _ => otherwise,
         };
-        for clause in [recover, otherwise, then].into_iter().flatten() {
+        let give_up = clauses.give_up.map(|(_, span)| span);
+        for clause in [recover, otherwise, then, give_up].into_iter().flatten() {
             self.report_contradiction(message, clause, place);
+        }
+    }
+
+    /// Time and distance are counted by whoever goes back; the code counts how often it tries.
+    fn check_costs(&mut self, clauses: &Clauses<'_, 's>) {
+        let (Some((bounds, _)), Some((ast::Recovery::Using(_), first))) =
+            (clauses.give_up, clauses.recover)
+        else {
+            return;
+        };
+        for bound in bounds {
+            if let Bound::Cost(cost) = bound {
+                let message = "a sequence is run so many times; time and distance are bounds of \
+                               recovering by reversing";
+                self.report_contradiction(message, cost.span, first);
+            }
         }
     }
 
@@ -171,6 +200,7 @@ impl<'s> Checker<'s> {
                 let depth = match depth {
                     ast::Depth::Fixed => Depth::Fixed,
                     ast::Depth::Escalating => Depth::Escalating { doubling: false },
+                    ast::Depth::Doubling => Depth::Escalating { doubling: true },
                     ast::Depth::Learned => Depth::Learned,
                 };
                 let extent = self.extent(extent);
@@ -207,7 +237,7 @@ impl<'s> Checker<'s> {
         let mut places: [Option<((), Span)>; 3] = [None; 3];
         for Spanned { value, span } in changes {
             let (word, place) = match value {
-                Change::Perturbed(_) => ("perturbed", 0),
+                Change::Perturbed { .. } => ("perturbed", 0),
                 Change::Slower => ("slower", 1),
                 Change::Lighter => ("lighter", 2),
             };
@@ -217,7 +247,7 @@ impl<'s> Checker<'s> {
             match value {
                 Change::Slower => reversal.slower = true,
                 Change::Lighter => reversal.lighter = true,
-                Change::Perturbed(within) => {
+                Change::Perturbed { within, at_random } => {
                     let value = self.constant(within);
                     let need = Need::new(ValueType::LENGTH, "`perturbed`");
                     if let ExpressionKind::Real(within_m) = self.fit(value, &need).kind {
@@ -225,8 +255,8 @@ impl<'s> Checker<'s> {
                             let message = "a perturbation is not negative".to_owned();
                             self.reports.error(Code::OutOfRange, *span, message, "negative");
                         }
-                        reversal.perturbation =
-                            Some(Perturbation { limit_m: within_m, pattern: Pattern::Spiral });
+                        let pattern = if *at_random { Pattern::Random } else { Pattern::Spiral };
+                        reversal.perturbation = Some(Perturbation { limit_m: within_m, pattern });
                     }
                 }
             }

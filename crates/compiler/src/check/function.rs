@@ -57,6 +57,17 @@ impl<'s> Checker<'s> {
         self.reports.error(Code::UnknownType, type_name.span, message, "a type without values");
     }
 
+    /// `cleanup { … }`
+    pub(super) fn check_cleanup(
+        &mut self,
+        id: FunctionId,
+        cleanup: &ast::Cleanup<'s>,
+    ) -> Option<Function> {
+        let name = Name::new("cleanup", cleanup.word);
+        let check = |checker: &mut Self| Body::Block(checker.block(&cleanup.body));
+        Some(self.function(id, name, FunctionKind::Cleanup, check))
+    }
+
     /// `io gripper_open { set 0 low; sleep 0.5 s }`
     pub(super) fn check_io(&mut self, id: FunctionId, io: &IoOperation<'s>) -> Option<Function> {
         let check = |checker: &mut Self| {

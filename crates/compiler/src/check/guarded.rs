@@ -12,11 +12,11 @@ use super::statement::speed;
 use crate::report::warning;
 use crate::tree::{
     Aftermath, Body, Expression, ExpressionKind, Function, GuardedMove, MoveResults, MoveSpans,
-    Prepared, Retry,
+    Prepared, Retry, Unmet,
 };
 use crate::types::ValueType;
 use obverse_bytecode::FunctionKind;
-use obverse_isa::{FunctionId, Instr, ReasonId, SlotId, Type};
+use obverse_isa::{FunctionId, Instr, SlotId, Type};
 use obverse_syntax::ast::{
     self, AdvancedMove, Behaviour, BinaryOperator, FrameWord, Heading, MoveClause, SpeedWord,
 };
@@ -39,7 +39,7 @@ type DistanceClause<'a, 's> =
 /// The clauses of an advanced move by kind, with their places.
 #[derive(Default)]
 struct Clauses<'a, 's> {
-    requires: Option<(&'a ast::Expression<'s>, Span)>,
+    requires: Option<((&'a ast::Expression<'s>, Option<ast::Name<'s>>), Span)>,
     distance: Option<(DistanceClause<'a, 's>, Span)>,
     stop_if: Option<(&'a ast::Expression<'s>, Span)>,
     speed: Option<(SpeedWord, Span)>,
@@ -85,8 +85,9 @@ impl<'s> Checker<'s> {
         for Spanned { value, span } in written {
             let span = *span;
             let first = match value {
-                MoveClause::Requires(condition) => {
-                    ("requires", once(&mut clauses.requires, condition, span))
+                MoveClause::Requires { condition, otherwise } => {
+                    let clause = (condition, *otherwise);
+                    ("requires", once(&mut clauses.requires, clause, span))
                 }
                 MoveClause::Distance { distance, heading, frame } => {
                     let clause = (distance, *heading, *frame);
@@ -123,7 +124,7 @@ impl<'s> Checker<'s> {
         motion: Span,
         end: Span,
     ) -> GuardedMove {
-        let requires = clauses.requires.map(|(condition, span)| self.requires(condition, span));
+        let requires = clauses.requires.map(|(requires, span)| self.move_requires(requires, span));
         let distance = self.move_distance(distance);
         let (axis, frame) = direction(heading.value, frame);
         let limit = clauses.stop_if.map(|(condition, span)| self.force_limit(condition, span));
@@ -199,12 +200,22 @@ impl<'s> Checker<'s> {
         );
     }
 
-    fn requires(&mut self, condition: &ast::Expression<'s>, span: Span) -> (Prepared, ReasonId) {
+    fn move_requires(
+        &mut self,
+        (condition, otherwise): (&ast::Expression<'s>, Option<ast::Name<'s>>),
+        span: Span,
+    ) -> (Prepared, Unmet) {
+        let is_error = |meaning| matches!(meaning, Meaning::Error(_));
+        let thrown = otherwise.and_then(|name| self.resolve(name, "an error", is_error));
         let reason = format!("{} requires {}", self.frame.name, print_expression(condition));
         let reason = self.reason(Spanned::new(&reason, span));
         let condition = self.prepared(condition, &Need::new(ValueType::Bool, "`requires`"));
         self.warn_of_constant(&condition.value, "leave the clause out, or ask for a reading");
-        (condition, reason)
+        let unmet = match thrown {
+            Some(Meaning::Error(error)) => Unmet::Throws(error),
+            _ => Unmet::Fails(reason),
+        };
+        (condition, unmet)
     }
 
     fn move_distance(&mut self, written: &ast::Expression<'s>) -> Prepared {

@@ -11,6 +11,7 @@ mod fork;
 mod frame;
 mod function;
 mod guarded;
+mod incident;
 mod motion;
 mod names;
 mod operators;
@@ -21,6 +22,7 @@ mod statement;
 mod still;
 mod unused;
 
+use crate::faults::NamedFault;
 use crate::keyframes::KeyframeFlow;
 use crate::report::Reports;
 use crate::tree::{Expression, Function, MAX_SLOTS};
@@ -29,7 +31,7 @@ use frame::FrameScope;
 use names::{Found, Meaning, Names};
 use obverse_bytecode::Module;
 use obverse_isa::{FunctionId, LocalId, Type};
-use obverse_syntax::ast::{Name, SignalKind};
+use obverse_syntax::ast::{FaultWord, Name, SignalKind};
 use obverse_syntax::codes::Code;
 use obverse_syntax::diagnostic::Diagnostic;
 use obverse_syntax::sources::Sources;
@@ -75,6 +77,9 @@ struct Checker<'s> {
     first_values: Vec<Expression>,
     wanted_checkpoints: Vec<Name<'s>>,
     set_checkpoints: BTreeSet<&'s str>,
+    /// Where each fault is named first.
+    faults: HashMap<FaultWord, Span>,
+    named_faults: Vec<NamedFault>,
     keyframes: KeyframeFlow,
     movers: Movers<'s>,
     frame: FrameScope,

@@ -5,6 +5,7 @@ use super::frame::FrameScope;
 use super::names::{Found, Meaning, Names};
 use super::still::Movers;
 use super::{Checker, Interned, Signature};
+use crate::faults;
 use crate::keyframes::KeyframeFlow;
 use crate::path;
 use crate::reached;
@@ -35,13 +36,15 @@ pub(crate) fn check<'s>(
     let unnamed = checker.warn_of_unused(main);
     let flow = std::mem::take(&mut checker.keyframes);
     flow.check(&checker.module, &mut checker.reports);
-    let Checker { reports, functions, module, first_values, .. } = checker;
+    let Checker { reports, functions, module, first_values, named_faults, .. } = checker;
     let functions: Option<Vec<tree::Function>> = functions.into_iter().collect();
     let mut reports = reports;
     let checked = match (main, functions) {
         (Some(main), Some(functions)) if !reports.has_errors() => {
-            let checked = tree::Program { module, first_values, functions, main };
+            let cleanup = module.cleanup.map(FunctionId);
+            let checked = tree::Program { module, first_values, functions, main, cleanup };
             reached::check(&checked, sources, &unnamed, &mut reports);
+            faults::check(&checked, &named_faults, &mut reports);
             Some(checked)
         }
         _ => None,
@@ -71,6 +74,8 @@ impl<'s> Checker<'s> {
             first_values: Vec::new(),
             wanted_checkpoints: Vec::new(),
             set_checkpoints: BTreeSet::new(),
+            named_faults: Vec::new(),
+            faults: HashMap::new(),
             keyframes: KeyframeFlow::default(),
             movers: Movers::default(),
             frame: FrameScope::new(FunctionId(0), "", Span::default()),
@@ -81,6 +86,7 @@ impl<'s> Checker<'s> {
     /// Give every declaration its index and its meaning, so that they can name one another.
     fn declare_items(&mut self, program: &Program<'s>) {
         let mut cell: Option<Span> = None;
+        let mut cleanup: Option<Span> = None;
         for item in &program.items {
             match item {
                 Item::Cell(file) => {
@@ -98,6 +104,13 @@ impl<'s> Checker<'s> {
                     _ = self.declare_function(guarded.name, Meaning::Guarded);
                 }
                 Item::Sequence(sequence) => self.declare_sequence(sequence),
+                Item::Cleanup(declared) => {
+                    if let Some(first) = cleanup.replace(declared.word) {
+                        self.report_twice("cleanup", declared.word, first);
+                    }
+                    let FunctionId(id) = self.new_function(declared.word);
+                    self.module.cleanup = Some(id);
+                }
                 Item::Allow(_) => {}
                 Item::Joints(joints) => {
                     let entries = self.module.joints.len();
@@ -214,6 +227,7 @@ impl<'s> Checker<'s> {
                 | Item::Import(_)
                 | Item::Signal(_)
                 | Item::Sequence(_)
+                | Item::Cleanup(_)
                 | Item::Allow(_) => {}
             }
         }
@@ -224,13 +238,16 @@ impl<'s> Checker<'s> {
         let declared = u16::try_from(self.signatures.len()).unwrap_or(u16::MAX);
         let mut ids = (1..declared).map(FunctionId);
         for item in &program.items {
-            let is_function =
-                matches!(item, Item::Io(_) | Item::AdvancedMove(_) | Item::Sequence(_));
+            let is_function = matches!(
+                item,
+                Item::Io(_) | Item::AdvancedMove(_) | Item::Sequence(_) | Item::Cleanup(_)
+            );
             let Some(id) = is_function.then(|| ids.next()).flatten() else { continue };
             let function = match item {
                 Item::Io(io) => self.check_io(id, io),
                 Item::AdvancedMove(guarded) => self.check_guarded(id, guarded),
                 Item::Sequence(sequence) => self.check_sequence(id, sequence),
+                Item::Cleanup(cleanup) => self.check_cleanup(id, cleanup),
                 _ => None,
             };
             if let Some(slot) = self.functions.get_mut(id.index() - 1) {

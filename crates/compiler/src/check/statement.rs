@@ -77,6 +77,7 @@ impl<'s> Checker<'s> {
                 return self.with_in_reverse(parameters, block, span);
             }
             Written::Throw(name) => return self.throw(*name, span),
+            Written::Requires { condition, error } => self.requires(condition, *error, span)?,
             // What it says has been heard before.
             Written::Allow(_) => return None,
         };
@@ -525,6 +526,23 @@ impl<'s> Checker<'s> {
             self.lose_position("this block has a reverse of its own", header);
         }
         checked
+    }
+
+    /// `requires CONDITION else throw NAME`
+    fn requires(
+        &mut self,
+        condition: &ast::Expression<'s>,
+        error: Name<'s>,
+        span: Span,
+    ) -> Option<StatementKind> {
+        let condition = self.value(condition, &Need::new(ValueType::Bool, "`requires`"));
+        self.warn_of_constant(&condition, "leave the statement out, or ask for a reading");
+        self.lose_position("recovering from this error may move the arm", span);
+        let is_error = |meaning| matches!(meaning, Meaning::Error(_));
+        match self.resolve(error, "an error", is_error)? {
+            Meaning::Error(id) => Some(StatementKind::Requires(condition, id)),
+            _ => None,
+        }
     }
 
     fn throw(&mut self, name: Name<'s>, span: Span) -> Checked {

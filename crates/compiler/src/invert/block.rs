@@ -310,7 +310,8 @@ impl<'p> Inverter<'p> {
             | StatementKind::Tool { .. }
             | StatementKind::Barrier(_)
             | StatementKind::Irreversible { .. }
-            | StatementKind::Throw(_) => {
+            | StatementKind::Throw(_)
+            | StatementKind::Requires { .. } => {
                 self.refuse(never(statement));
                 self.arm = Arm::refused();
                 Vec::new()

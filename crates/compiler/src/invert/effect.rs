@@ -310,7 +310,8 @@ impl<'s> Effect<'s> {
             | StatementKind::Break
             | StatementKind::Return
             | StatementKind::Advance(_)
-            | StatementKind::Throw(_) => Self::open(),
+            | StatementKind::Throw(_)
+            | StatementKind::Requires { .. } => Self::open(),
             StatementKind::Move { .. }
             | StatementKind::Wait(_)
             | StatementKind::Remember(_)

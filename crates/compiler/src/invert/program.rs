@@ -104,6 +104,7 @@ impl<'s> Plan<'s> {
                 | Item::Import(_)
                 | Item::Error(_)
                 | Item::AdvancedMove(_)
+                | Item::Cleanup(_)
                 | Item::Allow(_) => {}
             }
         }
@@ -558,7 +559,7 @@ fn needed(mut parts: Vec<Part<'_>>) -> Vec<Item<'_>> {
 
 fn name_of<'s>(item: &Item<'s>) -> Option<&'s str> {
     match item {
-        Item::Cell(_) | Item::Import(_) | Item::Allow(_) => None,
+        Item::Cell(_) | Item::Import(_) | Item::Cleanup(_) | Item::Allow(_) => None,
         Item::Signal(entry) => Some(entry.name.value),
         Item::Io(io) => Some(io.name.value),
         Item::Joints(joints) => Some(joints.name.value),

@@ -40,6 +40,7 @@ pub(super) fn expressions<'a, 's>(statement: &'a Statement<'s>) -> Vec<&'a Expre
         | StatementKind::While { condition, entered_when: assertion, .. } => {
             std::iter::once(condition).chain(assertion).collect()
         }
+        StatementKind::Requires { condition, .. } => vec![condition],
         StatementKind::For { first, last, .. } => vec![first, last],
         StatementKind::WithInReverse { parameters, .. } => {
             let limits = parameters.iter().filter_map(|parameter| match &parameter.value {

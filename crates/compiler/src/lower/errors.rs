@@ -5,16 +5,17 @@
 //! an action in a row, a sequence in one call of it, the program in one run.
 
 use super::Lower;
+use super::frame::Role;
 use super::leave::Way;
 use super::statement::PREFIX;
 use super::test::Test;
-use crate::response::Response;
+use crate::response::{Response, is_for_caller};
 use crate::tree::StatementKind;
-use obverse_bytecode::{Continuation, Mark, Recovery, Severity};
+use obverse_bytecode::{Continuation, ErrorDeclaration, Mark, Recovery, Severity};
 use obverse_isa::{ErrorId, FunctionId, GlobalId, Instr, LocalId, Type};
 
 /// How often something is done again before it is given up.
-pub(super) const MAX_ROUNDS: i16 = 3;
+const MAX_ROUNDS: i16 = 3;
 
 /// An action that may leave errors to be responded to.
 pub(super) struct Site {
@@ -27,7 +28,30 @@ pub(super) struct Site {
 impl Lower<'_> {
     /// The errors that are responded to after a statement.
     pub(super) fn due(&self, kind: &StatementKind) -> Vec<ErrorId> {
-        self.effects.due(kind, &self.program.module.errors)
+        match self.frame.role {
+            Role::Responds => self.effects.due(kind, &self.program.module.errors),
+            Role::Ends | Role::InReverse => Vec::new(),
+        }
+    }
+
+    /// In an advanced move or an I/O operation: it ends here if its act has raised an error that
+    /// its caller responds to now, and does more than note it.
+    pub(super) fn end_if_raised(&mut self, raised: &[ErrorId]) {
+        if self.frame.role != Role::Ends {
+            return;
+        }
+        for &error in raised {
+            let is_noted = self.effects.response(error) == Response::Ignore;
+            if !is_noted && !is_for_caller(self.declared(error)) {
+                self.push(Instr::PushRaised { error });
+                let mark = self.code.jump(|target| Instr::JumpIf { prefix: PREFIX, target });
+                self.frame.exits.push(mark);
+            }
+        }
+    }
+
+    fn declared(&self, error: ErrorId) -> &ErrorDeclaration {
+        &self.program.module.errors[error.index()]
     }
 
     /// Before an action that may leave these errors.
@@ -39,7 +63,11 @@ impl Lower<'_> {
         if repeats == 0 {
             return Site { again: Vec::new(), rounds: None };
         }
-        let local = self.hidden("rounds", Type::Int);
+        let local = match self.frame.again {
+            Some(local) => local,
+            None => self.hidden("rounds", Type::Int),
+        };
+        self.frame.again = Some(local);
         self.push(Instr::PushInt { value: 0 });
         self.push(Instr::StoreLocal { prefix: PREFIX, local });
         let again = (0..repeats).map(|_| self.join_ahead()).collect();
@@ -100,14 +128,20 @@ impl Lower<'_> {
         then: Continuation,
         site: &mut Site,
     ) {
-        let mut given_up = self.limits(then, site);
-        if let Some(function) = using {
-            self.recover_using(function, &mut given_up);
+        let limits = self.limits(error, then, site);
+        // If it may be raised anew by its recovery, it is not pending meanwhile, so that this is
+        // known.
+        let is_set_aside = using.is_some() && self.effects.is_raised_in_recovery(error);
+        if is_set_aside {
+            self.push(Instr::ErrorClear { error });
+        }
+        let failed = using.map_or(Vec::new(), |function| self.recover_using(function));
+        if !is_set_aside && !matches!(then, Continuation::Program | Continuation::Stop) {
+            self.push(Instr::ErrorClear { error });
         }
         match then {
-            Continuation::NextAction => self.push(Instr::ErrorClear { error }),
+            Continuation::NextAction => {}
             Continuation::Action => {
-                self.push(Instr::ErrorClear { error });
                 if let Some(local) = site.rounds {
                     self.push(Instr::AddLocalImmediate { local, value: 1 });
                 }
@@ -116,29 +150,35 @@ impl Lower<'_> {
                 }
             }
             Continuation::Sequence => {
-                self.push(Instr::ErrorClear { error });
                 self.leave(Way::Again);
             }
             Continuation::Program => {
-                // The error stays pending until the start has seen that there is a round left.
+                // The error is pending until the start has seen that there is a round left.
+                self.raise_again(error, is_set_aside);
                 self.give_up(Way::Restart);
             }
             Continuation::Stop => {
-                self.join_all(given_up);
+                self.join_all(failed);
+                self.raise_again(error, is_set_aside);
+                self.join_all(limits);
                 return self.give_up(Way::Out);
             }
         }
-        if given_up.is_empty() {
+        if limits.is_empty() && failed.is_empty() {
             return;
         }
         let over = self.frame.is_reached.then(|| self.jump());
-        self.join_all(given_up);
+        if !failed.is_empty() {
+            self.join_all(failed);
+            self.raise_again(error, is_set_aside);
+        }
+        self.join_all(limits);
         self.give_up(Way::Out);
         over.into_iter().for_each(|over| self.join_one(over));
     }
 
     /// Where recovering is not begun: while another recovery is under way, or too often.
-    fn limits(&mut self, then: Continuation, site: &Site) -> Vec<Mark> {
+    fn limits(&mut self, error: ErrorId, then: Continuation, site: &Site) -> Vec<Mark> {
         let mut given_up = Vec::new();
         if let (true, Some(recovering)) = (self.frame.may_nest_recovery, self.globals.recovering) {
             self.push(Instr::PushGlobal { global: recovering });
@@ -150,14 +190,15 @@ impl Lower<'_> {
             _ => None,
         };
         if let Some(rounds) = rounds {
-            let test = Test::UnlessLocalLtImmediate(rounds, MAX_ROUNDS);
+            let test = Test::UnlessLocalLtImmediate(rounds, most_rounds(self.declared(error)));
             given_up.push(self.code.jump(|target| test.to(target)));
         }
         given_up
     }
 
-    /// Run the sequence of a recovery; an error in it gives the recovery up.
-    fn recover_using(&mut self, function: FunctionId, given_up: &mut Vec<Mark>) {
+    /// Run the sequence of a recovery; the jumps where an error in it gives the recovery up.
+    fn recover_using(&mut self, function: FunctionId) -> Vec<Mark> {
+        let mut failed = Vec::new();
         if let Some(recovering) = self.globals.recovering {
             self.set_flag(recovering, true);
         }
@@ -167,16 +208,40 @@ impl Lower<'_> {
         }
         if let (true, Some(leaving)) = (self.effects.leaves(function), self.globals.leaving) {
             self.push(Instr::PushGlobal { global: leaving });
-            given_up.push(self.code.jump(|target| Instr::JumpIf { prefix: PREFIX, target }));
+            failed.push(self.code.jump(|target| Instr::JumpIf { prefix: PREFIX, target }));
         }
         for &error in self.effects.left_by(function) {
             if self.effects.response(error) == Response::Ignore {
                 self.push(Instr::ErrorClear { error });
             } else {
                 self.push(Instr::PushRaised { error });
-                given_up.push(self.code.jump(|target| Instr::JumpIf { prefix: PREFIX, target }));
+                failed.push(self.code.jump(|target| Instr::JumpIf { prefix: PREFIX, target }));
             }
         }
+        failed
+    }
+
+    /// After a recovery: what it was from is pending again, and once.
+    fn raise_again(&mut self, error: ErrorId, is_set_aside: bool) {
+        if is_set_aside {
+            self.pend(error);
+        }
+    }
+
+    /// Raise an error; one that is responded to later may be pending already, and is so once.
+    pub(super) fn raise(&mut self, error: ErrorId) {
+        let pending = is_for_caller(self.declared(error)).then(|| {
+            self.push(Instr::PushRaised { error });
+            self.code.jump(|target| Instr::JumpIf { prefix: PREFIX, target })
+        });
+        self.push(Instr::ErrorRaise { error });
+        pending.into_iter().for_each(|pending| self.join_one(pending));
+    }
+
+    /// An error is pending again that was so before: who raised it has been told.
+    pub(super) fn pend(&mut self, error: ErrorId) {
+        self.push(Instr::ErrorClear { error });
+        self.push(Instr::ErrorRaise { error });
     }
 
     /// Set one of the hidden variables of the program.
@@ -187,8 +252,23 @@ impl Lower<'_> {
 
     /// After a call of a function that may make its caller leave.
     pub(super) fn leave_if_left(&mut self, function: FunctionId) {
-        if self.effects.leaves(function) {
+        if self.may_be_left_by(function) {
             self.leave_if_leaving();
         }
     }
+
+    /// Whether a function that is called here may make this one leave.
+    pub(super) fn may_be_left_by(&self, function: FunctionId) -> bool {
+        self.frame.role != Role::InReverse && self.effects.leaves(function)
+    }
+}
+
+/// How often something is done again for an error before it is given up.
+pub(super) fn most_rounds(error: &ErrorDeclaration) -> i16 {
+    let attempts = match error.recovery {
+        // Those are bounds of going back.
+        Recovery::Reversing(_) => None,
+        Recovery::None | Recovery::Using(_) => error.bounds.attempts,
+    };
+    attempts.map_or(MAX_ROUNDS, |attempts| i16::try_from(attempts).unwrap_or(i16::MAX))
 }

@@ -92,9 +92,9 @@ impl Lower<'_> {
     /// A branch up to its end; the ways that lead there from within it.
     fn fork_branch(&mut self, branch: &Block, way: Option<LocalId>) -> Vec<Way> {
         // Another task may come between: each branch has a local of its own for what is left in it.
-        let around = self.frame.way.take();
+        let around = (self.frame.way.take(), self.frame.again.take());
         let scope = self.scoped(Scope::Branch(way, Vec::new()), branch);
-        self.frame.way = around;
+        (self.frame.way, self.frame.again) = around;
         let Some(Scope::Branch(_, ways)) = scope else { return Vec::new() };
         let (marks, ways): (Vec<Mark>, Vec<Way>) = ways.into_iter().unzip();
         self.at(branch.end, None);

@@ -20,6 +20,8 @@ pub(super) struct Frame<'p> {
     pub(super) has_actions: bool,
     /// Whether it is the start, which leaves nothing and restarts by itself.
     pub(super) is_start: bool,
+    /// What it does about errors.
+    pub(super) role: Role,
     /// Whether the next instruction is reached from the one before it.
     pub(super) is_reached: bool,
     /// Whether a recovery may begin while another one is under way.
@@ -32,10 +34,25 @@ pub(super) struct Frame<'p> {
     pub(super) exits: Vec<Mark>,
     /// The jumps to its beginning.
     pub(super) restarts: Vec<Mark>,
+    /// How often the action in hand has been done again in a row, if any can; branches of a fork
+    /// have one each.
+    pub(super) again: Option<LocalId>,
     /// How often it has begun again, if it can.
     pub(super) rounds: Option<LocalId>,
     /// Which way leads out of a block with a reverse of its own, if any does.
     pub(super) way: Option<LocalId>,
+}
+
+/// What a function does about the errors that are raised in it.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(super) enum Role {
+    /// It responds to them.
+    #[default]
+    Responds,
+    /// It ends, and leaves them to its caller: an advanced move, an I/O operation.
+    Ends,
+    /// Nothing: it is run in reverse, where none is raised.
+    InReverse,
 }
 
 /// A loop.

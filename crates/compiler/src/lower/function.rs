@@ -1,7 +1,7 @@
 //! Functions: what surrounds their bodies.
 
 use super::Lower;
-use super::frame::Frame;
+use super::frame::{Frame, Role};
 use crate::tree::{Body, Function};
 use obverse_bytecode::{Continuation, FunctionKind};
 use obverse_isa::{FunctionId, Instr, Type};
@@ -9,7 +9,7 @@ use obverse_isa::{FunctionId, Instr, Type};
 impl<'p> Lower<'p> {
     /// A function other than the start.
     pub(super) fn function(&mut self, id: FunctionId, function: &'p Function) {
-        use FunctionKind::{Action, Replacement, Sequence};
+        use FunctionKind::{Action, AdvancedMove, Cleanup, Io, Replacement, Sequence};
         let first = self.code.here();
         let layout = match function.kept {
             Some(kept) => self.layout_around(kept),
@@ -19,7 +19,12 @@ impl<'p> Lower<'p> {
             named: function.named,
             layout,
             modal: &function.modal,
-            has_actions: matches!(function.kind, Action | Replacement | Sequence),
+            has_actions: matches!(function.kind, Action | Replacement | Sequence | Cleanup),
+            role: match function.kind {
+                Replacement => Role::InReverse,
+                Io | AdvancedMove => Role::Ends,
+                _ => Role::Responds,
+            },
             is_reached: true,
             may_nest_recovery: self.effects.recovers_in_recovery(id),
             ..Frame::default()
@@ -55,13 +60,7 @@ impl<'p> Lower<'p> {
         for &(setting, local) in self.frame.modal {
             self.keep(setting, local);
         }
-        let mut begins_again = false;
-        block.each_statement(&mut |statement| {
-            let due = self.due(&statement.kind);
-            let mut continuations = due.into_iter().map(|error| self.continuation(error));
-            begins_again |= continuations.any(|then| then == Some(Continuation::Sequence));
-        });
-        let top = begins_again.then(|| {
+        let top = self.begins_again(block).then(|| {
             self.frame.rounds = Some(self.hidden("rounds", Type::Int));
             self.join_ahead()
         });
@@ -81,6 +80,22 @@ impl<'p> Lower<'p> {
         let exits = std::mem::take(&mut self.frame.exits);
         self.join_all(exits);
         self.restore_modal();
+    }
+
+    /// Whether an error of a block may have the function begin again.
+    fn begins_again(&self, block: &crate::tree::Block) -> bool {
+        let mut begins_again = false;
+        block.each_statement(&mut |statement| {
+            begins_again |= match self.kept_block(&statement.kind) {
+                Some(kept) => self.begins_again(kept),
+                None => {
+                    let due = self.due(&statement.kind);
+                    let mut continuations = due.into_iter().map(|error| self.continuation(error));
+                    continuations.any(|then| then == Some(Continuation::Sequence))
+                }
+            };
+        });
+        begins_again
     }
 
     fn restore_modal(&mut self) {

@@ -2,7 +2,7 @@
 
 use super::Lower;
 use super::statement::PREFIX;
-use crate::tree::{Aftermath, Expression, GuardedMove, Retry, SettingValue};
+use crate::tree::{Aftermath, Expression, GuardedMove, Retry, SettingValue, Unmet};
 use obverse_bytecode::Mark;
 use obverse_isa::{Axis, CounterId, Instr, LocalId, Path, Setting, SlotId};
 
@@ -12,6 +12,12 @@ const ATTEMPT: CounterId = CounterId(0);
 impl Lower<'_> {
     /// The body of an advanced move.
     pub(super) fn guarded(&mut self, guarded: &GuardedMove) {
+        self.guarded_body(guarded);
+        let exits = std::mem::take(&mut self.frame.exits);
+        self.join_all(exits);
+    }
+
+    fn guarded_body(&mut self, guarded: &GuardedMove) {
         self.at(guarded.spans.motion, None);
         if let Some(slot) = guarded.initial {
             self.push(Instr::Remember { slot });
@@ -42,13 +48,25 @@ impl Lower<'_> {
 
     /// What must hold before: the jump to what follows if it does not, or a trap.
     fn requires(&mut self, guarded: &GuardedMove) -> Option<Mark> {
-        let (condition, reason) = guarded.requires.as_ref()?;
+        let (condition, unmet) = guarded.requires.as_ref()?;
         self.at(condition.value.span, None);
         self.hoists(&condition.hoists);
-        if guarded.on_failure.throws.is_none() {
-            self.expression(&condition.value);
-            self.push(Instr::Require { prefix: PREFIX, reason: *reason });
-            return None;
+        match *unmet {
+            Unmet::Throws(error) => {
+                let test = self.test(&condition.value, true);
+                let holds = self.code.jump(|target| test.to(target));
+                self.raise(error);
+                let over = self.jump();
+                self.frame.exits.push(over);
+                self.join_one(holds);
+                return None;
+            }
+            Unmet::Fails(reason) if guarded.on_failure.throws.is_none() => {
+                self.expression(&condition.value);
+                self.push(Instr::Require { prefix: PREFIX, reason });
+                return None;
+            }
+            Unmet::Fails(_) => {}
         }
         let test = self.test(&condition.value, false);
         Some(self.code.jump(|target| test.to(target)))
@@ -76,6 +94,13 @@ impl Lower<'_> {
         if let Some((_, former)) = guarded.speed {
             self.restore(Setting::Speed, former);
         }
+        self.end_if_moved_wrong();
+    }
+
+    /// After a motion: the move ends if it has met a fault that the program calls an error.
+    fn end_if_moved_wrong(&mut self) {
+        let effects = self.effects;
+        self.end_if_raised(effects.raised_by_motion());
     }
 
     /// The jump that is taken if an attempt has succeeded.
@@ -127,6 +152,7 @@ impl Lower<'_> {
             self.offset(draw, &retry.within.value);
         }
         self.push(Instr::MoveOffset { prefix: PREFIX, frame: guarded.frame });
+        self.end_if_moved_wrong();
     }
 
     /// Push `(2 * draw - 1) * within`: evenly from `-within` to `within`.
@@ -143,6 +169,7 @@ impl Lower<'_> {
 
     fn move_back(&mut self, slot: SlotId) {
         self.push(Instr::MoveSlot { slot, path: Path::Linear });
+        self.end_if_moved_wrong();
     }
 
     fn aftermath_failure(&mut self, guarded: &GuardedMove, cannot: Option<Mark>) {
@@ -174,7 +201,7 @@ impl Lower<'_> {
     fn throw(&mut self, aftermath: &Aftermath) {
         if let Some((error, span)) = aftermath.throws {
             self.at(span, None);
-            self.push(Instr::ErrorRaise { error });
+            self.raise(error);
         }
     }
 }

@@ -19,7 +19,7 @@ pub(super) enum Changed {
     Setting(Setting),
 }
 
-impl Lower<'_> {
+impl<'p> Lower<'p> {
     /// A block that keeps its order, where it stands.
     pub(super) fn kept(&mut self, function: FunctionId) {
         let declared = self.program.function(function);
@@ -33,6 +33,15 @@ impl Lower<'_> {
             self.push(Instr::StoreLocal { prefix: PREFIX, local });
         }
         self.reversed(block, Some(function));
+    }
+
+    /// The block of a statement that keeps its order in reverse.
+    pub(super) fn kept_block(&self, kind: &StatementKind) -> Option<&'p Block> {
+        let StatementKind::Kept(function) = kind else { return None };
+        match &self.program.function(*function).body {
+            Body::Block(block) => Some(block),
+            Body::Guarded(_) => None,
+        }
     }
 
     /// The same block as a function.

@@ -135,8 +135,10 @@ impl Lower<'_> {
 
     fn may_leave(&self, statement: &Statement) -> bool {
         let due = self.due(&statement.kind);
-        let is_left = matches!(&statement.kind,
-            StatementKind::Call(callee, _) if self.effects.leaves(*callee));
+        let is_left = match &statement.kind {
+            StatementKind::Call(callee, _) => self.may_be_left_by(*callee),
+            kind => self.kept_block(kind).is_some_and(|kept| self.may_be_left(kept)),
+        };
         is_left || due.iter().any(|error| self.effects.response(*error) != Response::Ignore)
     }
 

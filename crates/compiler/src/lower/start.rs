@@ -1,7 +1,7 @@
 //! The start: first values, the call of the main sequence, and beginning the program again.
 
 use super::Lower;
-use super::errors::MAX_ROUNDS;
+use super::errors::most_rounds;
 use super::frame::Frame;
 use super::statement::PREFIX;
 use super::test::Test;
@@ -55,8 +55,42 @@ impl<'p> Lower<'p> {
         if let Some((top, rounds)) = top {
             self.restart(top, rounds);
         }
+        self.cleanup();
         self.push(Instr::Halt {});
         self.close_function("$start", FunctionKind::Start, 0);
+    }
+
+    /// What is done at the end, whatever came before. Errors that are pending then are not so
+    /// meanwhile: it is none of them that is found after an act of it.
+    fn cleanup(&mut self) {
+        let Some(function) = self.program.cleanup else { return };
+        self.at(self.program.function(function).named, None);
+        if let (true, Some(leaving)) = (self.effects.leaves(function), self.globals.leaving) {
+            self.set_flag(leaving, false);
+        }
+        let mut pending = Vec::new();
+        for error in self.effects.raised_within(function) {
+            let local = self.hidden("pending", Type::Bool);
+            self.push(Instr::PushRaised { error });
+            let is_not = self.code.jump(|target| Instr::JumpUnless { prefix: PREFIX, target });
+            self.push_bool(true);
+            self.push(Instr::StoreLocal { prefix: PREFIX, local });
+            self.push(Instr::ErrorClear { error });
+            self.join_one(is_not);
+            pending.push((error, local));
+        }
+        self.push(Instr::Call { prefix: PREFIX, function });
+        for &error in self.effects.left_by(function) {
+            if self.effects.response(error) == Response::Ignore {
+                self.push(Instr::ErrorClear { error });
+            }
+        }
+        for (error, local) in pending {
+            self.push(Instr::PushLocal { local });
+            let was_not = self.code.jump(|target| Instr::JumpUnless { prefix: PREFIX, target });
+            self.pend(error);
+            self.join_one(was_not);
+        }
     }
 
     /// Begin the program again if that is asked for and has not been done too often.
@@ -64,10 +98,13 @@ impl<'p> Lower<'p> {
         let Some(restart) = self.globals.restart else { return };
         self.push(Instr::PushGlobal { global: restart });
         let unasked = self.code.jump(|target| Instr::JumpUnless { prefix: PREFIX, target });
-        let test = Test::UnlessLocalLtImmediate(rounds, MAX_ROUNDS);
+        let errors = restarting_errors(self.program, self.effects);
+        let declared = errors.iter().map(|error| &self.program.module.errors[error.index()]);
+        let most = declared.map(most_rounds).max().unwrap_or(0);
+        let test = Test::UnlessLocalLtImmediate(rounds, most);
         let too_often = self.code.jump(|target| test.to(target));
         self.push(Instr::AddLocalImmediate { local: rounds, value: 1 });
-        for error in restarting_errors(self.program, self.effects) {
+        for error in errors {
             self.push(Instr::ErrorClear { error });
         }
         self.set_flag(restart, false);

@@ -23,16 +23,32 @@ impl Lower<'_> {
     fn statement(&mut self, statement: &Statement) {
         use StatementKind::{
             Advance, Barrier, Break, Call, Checkpoint, For, Fork, If, Io, Irreversible, Kept, Loop,
-            Move, Output, Remember, Return, Reversed, Set, SetFor, Store, Throw, Update, Wait,
-            WaitInput, While,
+            Move, Output, Remember, Requires, Return, Reversed, Set, SetFor, Store, Throw, Update,
+            Wait, WaitInput, While,
         };
-        if matches!(statement.kind, Advance(..) | Call(..) | Throw(_)) {
-            return self.fallible(statement);
+        let due: Vec<ErrorId> = self.due(&statement.kind);
+        if !due.is_empty() {
+            self.at(statement.span, None);
         }
+        let site = self.begin_site(&due);
         self.begin(statement);
+        let holds = match &statement.kind {
+            Requires(condition, _) => {
+                let test = self.test(condition, true);
+                Some(self.code.jump(|target| test.to(target)))
+            }
+            _ => None,
+        };
         match &statement.kind {
             Move(motion) => self.motion(motion),
-            Io(function, counterpart) => self.call_or_opposite(*function, *counterpart),
+            Advance(function, counterpart) | Io(function, counterpart) => {
+                self.call_or_opposite(*function, *counterpart);
+            }
+            Call(function, arguments) => {
+                arguments.iter().for_each(|argument| self.expression(argument));
+                self.push(Instr::Call { prefix: PREFIX, function: *function });
+                self.leave_if_left(*function);
+            }
             Wait(time) => {
                 self.expression(time);
                 self.push(Instr::Wait { prefix: PREFIX });
@@ -62,7 +78,15 @@ impl Lower<'_> {
             }
             Reversed(block, replacement) => self.reversed(block, *replacement),
             Kept(function) => self.kept(*function),
-            Advance(..) | Call(..) | Throw(_) => {}
+            Throw(error) | Requires(_, error) => self.raise(*error),
+        }
+        let is_thrown = matches!(statement.kind, Throw(_) | Requires(..));
+        self.end_site(&due, site, is_thrown);
+        let effects = self.effects;
+        self.end_if_raised(effects.raised_by_act(&statement.kind));
+        holds.into_iter().for_each(|holds| self.join_one(holds));
+        if let WaitInput { came, otherwise: Some(otherwise), .. } = &statement.kind {
+            self.unless_came(*came, otherwise);
         }
     }
 
@@ -71,28 +95,6 @@ impl Lower<'_> {
         let action = if self.frame.has_actions { action_of(&statement.kind) } else { None };
         self.at(statement.span, action);
         self.hoists(&statement.hoists);
-    }
-
-    /// A statement that may leave an error to be responded to.
-    fn fallible(&mut self, statement: &Statement) {
-        let due: Vec<ErrorId> = self.due(&statement.kind);
-        self.at(statement.span, None);
-        let site = self.begin_site(&due);
-        self.begin(statement);
-        match &statement.kind {
-            StatementKind::Advance(function, counterpart) => {
-                self.call_or_opposite(*function, *counterpart);
-            }
-            StatementKind::Call(function, arguments) => {
-                arguments.iter().for_each(|argument| self.expression(argument));
-                self.push(Instr::Call { prefix: PREFIX, function: *function });
-                self.leave_if_left(*function);
-            }
-            StatementKind::Throw(error) => self.push(Instr::ErrorRaise { error: *error }),
-            _ => {}
-        }
-        let is_thrown = matches!(statement.kind, StatementKind::Throw(_));
-        self.end_site(&due, site, is_thrown);
     }
 
     fn motion(&mut self, motion: &Motion) {
@@ -145,14 +147,16 @@ impl Lower<'_> {
     }
 
     fn wait_input(&mut self, statement: &Statement) {
-        let StatementKind::WaitInput { bit, level, timeout, came, otherwise } = &statement.kind
-        else {
+        let StatementKind::WaitInput { bit, level, timeout, came, .. } = &statement.kind else {
             return;
         };
         self.expression(timeout);
         let (local, bit, level) = (*came, *bit, *level);
         self.push(Instr::WaitInput { prefix: PREFIX, local, bit, level });
-        let Some(otherwise) = otherwise else { return };
+    }
+
+    /// What is done if an input did not come.
+    fn unless_came(&mut self, local: LocalId, otherwise: &Block) {
         self.push(Instr::PushLocal { local });
         let over = self.code.jump(|target| Instr::JumpIf { prefix: PREFIX, target });
         self.block(otherwise);

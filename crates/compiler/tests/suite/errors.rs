@@ -361,7 +361,10 @@ fn the_sequence_goes_on_meanwhile() {
         "inner",
         "
         enter
+        push.raised e
+        jump.if +2
         error.raise e
+        join -2
         push.const 1.0
         wait
         return
@@ -453,29 +456,31 @@ fn a_recovery_does_not_begin_within_another() {
         "fix",
         "
         enter
-        join +22
+        join +24
         error.raise e
         push.global $recovering
-        jump.if +11
-        jump.unless.local.lt.imm $rounds 3 +11
+        jump.if +14
+        jump.unless.local.lt.imm $rounds 3 +14
+        error.clear e
         push.bool high
         store.global $recovering
         call fix
         push.bool low
         store.global $recovering
         push.global $leaving
-        jump.if +5
+        jump.if +2
+        jump +9
+        land -2
         error.clear e
-        jump +7
-        land -11
-        join -11
-        join -5
+        error.raise e
+        join -14
+        join -14
         push.bool high
         store.global $leaving
         jump +4
-        land -7
+        land -9
         add.local.imm $rounds 1
-        jump -22
+        jump -24
         land -4
         return
         ",

@@ -12,6 +12,7 @@ mod forks;
 mod generated;
 mod guarded;
 mod imports;
+mod incidents;
 mod invert;
 mod limits;
 mod module;

@@ -336,6 +336,17 @@ macro_rules! errors {
                perturbation 3 times } }\n\
                sequence main { advance insert }"
 
+    FaultTwice "E0313" "a fault that raises two errors"
+        why "When the workcell does not do as commanded, the error is raised that names the fault. \
+             Which of two would hold is a guess, so that each fault is named once in a program, \
+             with the files that it imports."
+        wrong "error slipped { on protective stop }\n\
+               error jammed { on collision, protective stop }\n\
+               sequence main { move 5 mm down }"
+        right "error slipped { on protective stop }\n\
+               error jammed { on collision }\n\
+               sequence main { move 5 mm down }"
+
     // E04xx: reversal.
     NoNamedPosition "E0401" "the position named last is not known"
         why "`reversible always` takes a move back to the configuration that the program named \

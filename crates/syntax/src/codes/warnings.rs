@@ -99,6 +99,15 @@ macro_rules! warnings {
         right "error jam { recover by reversing to checkpoint ready then return to action }\n\
                sequence main { checkpoint ready if input 1 { throw jam } }"
 
+    FaultNeverMet "W0404" "a fault that nothing in the program can meet"
+        why "An error names a fault that only motions meet, and the program moves nothing; or there \
+             is nothing at all that could fail. The error is raised by nothing. Leave the fault \
+             out; or what moves the arm is missing."
+        wrong "error jammed { on collision }\n\
+               sequence main { wait 1 s }"
+        right "error stopped { on emergency stop }\n\
+               sequence main { wait 1 s }"
+
     // W05xx: files.
     TwoNames "W0501" "two names for one output or input"
         why "An I/O map says what each line of the workcell is for. Two names for one line are \

@@ -3,8 +3,9 @@
 use super::piece::{Column, Glue, Member};
 use super::writer::{Style, Writer};
 use crate::ast::{
-    Allow, Behaviour, Change, Continuation, Depth, ErrorClause, Extent, Item, JointsDeclaration,
-    Keyframe, MoveClause, Otherwise, Recovery, Respond, Sequence, Severity, SignalKind,
+    Allow, Behaviour, Bound, Change, Continuation, Depth, ErrorClause, Expression, Extent, Item,
+    JointsDeclaration, Keyframe, MoveClause, Name, Otherwise, Recovery, Respond, Sequence,
+    Severity, SignalKind,
 };
 use crate::span::Spanned;
 
@@ -17,7 +18,8 @@ impl<'s> Writer<'s> {
         let is_apart = |pair: &[Item<'s>]| {
             let is_same_kind = std::mem::discriminant(&pair[0]) == std::mem::discriminant(&pair[1]);
             let is_long =
-                matches!(pair[1], Item::Sequence(_) | Item::Error(_) | Item::AdvancedMove(_));
+                matches!(pair[1], Item::Sequence(_) | Item::Error(_) | Item::AdvancedMove(_))
+                    || matches!(pair[1], Item::Cleanup(_));
             is_long || !is_same_kind
         };
         for (pair, member) in items.windows(2).zip(members.iter_mut().skip(1)) {
@@ -78,6 +80,10 @@ impl<'s> Writer<'s> {
             }
             Item::Variable(variable) => self.variable(variable),
             Item::Sequence(sequence) => self.sequence(sequence),
+            Item::Cleanup(cleanup) => {
+                self.word("cleanup");
+                self.body(&cleanup.body, !cleanup.body.statements.is_empty());
+            }
             Item::Allow(allow) => self.allow(allow),
         }
     }
@@ -161,7 +167,37 @@ impl<'s> Writer<'s> {
                     Continuation::Stop => &["stop"],
                 });
             }
+            ErrorClause::On(faults) => {
+                self.word("on");
+                self.in_a_row(faults, |writer, fault| writer.several(fault.value.text()));
+            }
+            ErrorClause::GiveUp(bounds) => {
+                self.words(&["give", "up", "after"]);
+                self.in_a_row(bounds, |writer, bound| match bound {
+                    Bound::Attempts(times) => {
+                        writer.index(*times);
+                        writer.word("times");
+                    }
+                    Bound::Cost(cost) => writer.expression(cost),
+                });
+            }
         }
+    }
+
+    /// One thing or more, with commas between.
+    fn in_a_row<T>(&mut self, things: &[T], mut write: impl FnMut(&mut Self, &T)) {
+        for (index, thing) in things.iter().enumerate() {
+            if index > 0 {
+                self.tight(",");
+                self.glue(Glue::Break(0));
+            }
+            write(self, thing);
+        }
+    }
+
+    /// The words of a text.
+    fn several(&mut self, text: &'static str) {
+        text.split(' ').for_each(|word| self.word(word));
     }
 
     fn recovery(&mut self, recovery: &Recovery<'s>) {
@@ -172,6 +208,7 @@ impl<'s> Writer<'s> {
                 match depth {
                     Depth::Fixed => {}
                     Depth::Escalating => self.word("escalating"),
+                    Depth::Doubling => self.words(&["escalating", "doubling"]),
                     Depth::Learned => self.word("learned"),
                 }
                 self.extent(*depth, extent);
@@ -179,9 +216,12 @@ impl<'s> Writer<'s> {
                     self.tight(",");
                     self.glue(Glue::Break(0));
                     match &change.value {
-                        Change::Perturbed(distance) => {
+                        Change::Perturbed { within, at_random } => {
                             self.word("perturbed");
-                            self.expression(distance);
+                            if *at_random {
+                                self.words(&["at", "random"]);
+                            }
+                            self.expression(within);
                         }
                         Change::Slower => self.word("slower"),
                         Change::Lighter => self.word("lighter"),
@@ -215,9 +255,8 @@ impl<'s> Writer<'s> {
 
     fn move_clause(&mut self, clause: &Spanned<MoveClause<'s>>) {
         match &clause.value {
-            MoveClause::Requires(condition) => {
-                self.word("requires");
-                self.expression(condition);
+            MoveClause::Requires { condition, otherwise } => {
+                self.requires(condition, otherwise.as_ref());
             }
             MoveClause::Distance { distance, heading, frame } => {
                 self.word("distance");
@@ -235,6 +274,16 @@ impl<'s> Writer<'s> {
             MoveClause::OppositeForce => self.words(&["opposite", "force", "in", "reverse"]),
             MoveClause::OnSuccess(behaviours) => self.behaviours("success", behaviours),
             MoveClause::OnFailure(behaviours) => self.behaviours("failure", behaviours),
+        }
+    }
+
+    /// `requires CONDITION else throw NAME`
+    pub(super) fn requires(&mut self, condition: &Expression<'s>, otherwise: Option<&Name<'s>>) {
+        self.word("requires");
+        self.expression(condition);
+        if let Some(error) = otherwise {
+            self.word("else");
+            self.named("throw", error.value);
         }
     }
 

@@ -89,6 +89,7 @@ impl<'s> Writer<'s> {
             | StatementKind::KeepInReverse(_)
             | StatementKind::WithInReverse { .. } => self.reversal(&statement.kind),
             StatementKind::Throw(name) => self.named("throw", name.value),
+            StatementKind::Requires { condition, error } => self.requires(condition, Some(error)),
             StatementKind::Allow(allow) => self.allow(allow),
         }
     }
@@ -407,6 +408,7 @@ fn has_block(kind: &StatementKind<'_>) -> bool {
         | StatementKind::Checkpoint(_)
         | StatementKind::Barrier(_)
         | StatementKind::Throw(_)
+        | StatementKind::Requires { .. }
         | StatementKind::Allow(_) => false,
     }
 }

@@ -165,7 +165,10 @@ fn a_recovery_has_depth_extent_and_changes() {
                     Extent::Sequence => "sequence".to_owned(),
                 };
                 let changes = changes.iter().map(|change| match &change.value {
-                    Change::Perturbed(by) => format!(", perturbed {}", show(by)),
+                    Change::Perturbed { within, at_random } => {
+                        let how = if *at_random { " at random" } else { "" };
+                        format!(", perturbed{how} {}", show(within))
+                    }
                     Change::Slower => ", slower".to_owned(),
                     Change::Lighter => ", lighter".to_owned(),
                 });
@@ -180,15 +183,46 @@ fn a_recovery_has_depth_extent_and_changes() {
         "Escalating 4 actions, perturbed 1.0mm, slower, lighter"
     );
     assert_eq!(recovery("by reversing learned up to 2 actions"), "Learned 2 actions");
+    assert_eq!(
+        recovery("by reversing escalating doubling up to 8 actions, perturbed at random 1 mm"),
+        "Doubling 8 actions, perturbed at random 1.0mm"
+    );
+    assert_eq!(recovery("by reversing 2 actions, perturbed at"), "Fixed 2 actions, perturbed at");
     assert_eq!(recovery("by reversing to checkpoint here"), "Fixed checkpoint here");
     assert_eq!(recovery("by reversing to start of sequence, slower"), "Fixed sequence, slower");
     assert_eq!(recovery("by reversing escalating up to start of sequence"), "Escalating sequence");
 }
 
 #[test]
+fn an_error_names_faults_and_what_an_incident_may_cost() {
+    let clauses = |source: &str| {
+        let source = format!("error e {{ {source} }}");
+        format!("{:?}", error_clauses(&source))
+    };
+    for fault in FaultWord::ALL {
+        let clauses = clauses(&format!("on missing, {}", fault.text()));
+        assert!(clauses.contains(&format!("value: {fault:?}, span")), "{clauses}");
+    }
+    let bounds = "error e { give up after 6 times, 90 s, limit * 2 }";
+    let clauses = error_clauses(bounds);
+    let [ErrorClause::GiveUp(bounds)] = &clauses[..] else { panic!("{clauses:?}") };
+    let [Bound::Attempts(times), Bound::Cost(time), Bound::Cost(limit)] = &bounds[..] else {
+        panic!("{bounds:?}")
+    };
+    assert_eq!(times.value, 6);
+    assert_eq!((show(time).as_str(), show(limit).as_str()), ("90.0s", "(limit Multiply 2)"));
+}
+
+#[test]
+fn what_cleans_up_is_a_block() {
+    let Item::Cleanup(cleanup) = item("cleanup { io open; move to home }") else { panic!() };
+    assert_eq!(cleanup.body.statements.len(), 2);
+}
+
+#[test]
 fn an_advanced_move_has_clauses() {
     let source = "advanced move insert {
-        requires holding  distance 300 mm forward in tcp  stop if force > 5 N  speed very slow
+        requires holding else throw lost  distance 300 mm forward in tcp  stop if force > 5 N  speed very slow
         succeeds if distance > 200 mm
         on success { return to initial position }
         on failure { repeat with perturbation 3 times; repeat with perturbation 2 mm 4 times
@@ -197,7 +231,7 @@ fn an_advanced_move_has_clauses() {
     let clauses: Vec<MoveClause<'_>> =
         advanced.clauses.into_iter().map(|clause| clause.value).collect();
     let [
-        MoveClause::Requires(requires),
+        MoveClause::Requires { condition: requires, otherwise: Some(otherwise) },
         MoveClause::Distance { distance, heading, frame },
         MoveClause::StopIf(stop),
         MoveClause::Speed(SpeedWord::VerySlow),
@@ -208,7 +242,7 @@ fn an_advanced_move_has_clauses() {
     else {
         panic!("{clauses:?}")
     };
-    assert_eq!(show(requires), "holding");
+    assert_eq!((show(requires).as_str(), otherwise.value), ("holding", "lost"));
     assert_eq!((show(distance).as_str(), heading.value), ("300.0mm", Heading::Forward));
     assert_eq!(frame.map(|frame| frame.value), Some(FrameWord::Tcp));
     assert_eq!(show(stop), "(force Greater 5.0N)");

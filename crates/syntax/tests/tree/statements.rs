@@ -132,6 +132,9 @@ fn outline(statement: &Statement<'_>) -> String {
         StatementKind::Return => "return".to_owned(),
         StatementKind::Speed { block, .. } => format!("speed{}", optional(block)),
         StatementKind::Tool { name, block } => format!("tool:{}{}", name.value, optional(block)),
+        StatementKind::Requires { condition, error } => {
+            format!("requires:{}:{}", show(condition), error.value)
+        }
         StatementKind::Checkpoint(name) => format!("checkpoint:{}", name.value),
         StatementKind::Barrier(reason) => format!("barrier:{}", reason.value),
         StatementKind::Irreversible { reason, block: body } => {
@@ -203,6 +206,8 @@ fn statements_are_told_apart() {
         ),
         ("with = limit straight = moves", "with:Set:limit straight:Set:moves"),
         ("throw lost", "throw:lost"),
+        ("requires a > 2 else throw lost", "requires:(a Greater 2):lost"),
+        ("requires = 2 requires a else throw b", "requires:Set:2 requires:a:b"),
     ];
     for (source, outline) in cases {
         assert_eq!(body(source), outline, "{source}");

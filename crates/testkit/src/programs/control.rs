@@ -283,7 +283,7 @@ impl Generator<'_, '_> {
         Ok(())
     }
 
-    /// `if … { … throw e }`
+    /// `if … { … throw e }`, `requires … else throw e`
     fn throw(&mut self) -> Result<()> {
         let may_raise = !self.frame.is_replacement && self.frame.claim.is_none();
         if self.errors.is_empty() || !may_raise {
@@ -291,10 +291,15 @@ impl Generator<'_, '_> {
         }
         let condition = self.expression(Type::Bool)?;
         let error = self.choose(&self.errors.clone())?;
-        self.open(&format!("if {condition}"));
-        self.block(2)?;
-        self.line(&format!("throw {error}"));
-        self.close("");
+        match self.one_in(3)? {
+            true => self.line(&format!("requires {condition} else throw {error}")),
+            false => {
+                self.open(&format!("if {condition}"));
+                self.block(2)?;
+                self.line(&format!("throw {error}"));
+                self.close("");
+            }
+        }
         self.frame.knows_position = false;
         Ok(())
     }

@@ -4,6 +4,19 @@ use super::scope::{Frame, Type, Variable};
 use super::{Callee, Generator};
 use arbitrary::Result;
 
+/// Every fault that a program can name.
+const FAULTS: [&str; 9] = [
+    "joint limit",
+    "out of reach",
+    "singularity",
+    "collision",
+    "force limit",
+    "protective stop",
+    "emergency stop",
+    "stopped short",
+    "missing",
+];
+
 /// How deep a recursion goes at the most.
 const RECURSION: u64 = 4;
 
@@ -136,9 +149,14 @@ impl Generator<'_, '_> {
         self.frame = Frame::new();
         self.open(&format!("advanced move {name}"));
         let throws = self.behaviours()?;
-        if self.one_in(3)? && (throws || self.traps()?) {
+        if self.one_in(3)? {
             let condition = self.expression(Type::Bool)?;
-            self.line(&format!("requires {condition}"));
+            if !self.errors.is_empty() && self.one_in(2)? {
+                let error = self.choose(&self.errors.clone())?;
+                self.line(&format!("requires {condition} else throw {error}"));
+            } else if throws || self.traps()? {
+                self.line(&format!("requires {condition}"));
+            }
         }
         let way = self.way(true)?;
         self.line(&format!("distance {way}"));
@@ -286,13 +304,59 @@ impl Generator<'_, '_> {
         let callees = self.callees.iter().filter(can_recover);
         let using: Vec<String> = callees.map(|callee| callee.name.clone()).collect();
         let mut items = Vec::new();
+        let mut faults = FAULTS.to_vec();
         for name in self.errors.clone() {
             self.open(&format!("error {name}"));
-            self.error_clauses(&using)?;
+            let raised_by_faults = self.faults(&mut faults)?;
+            // Whatever acts would share the devices of the recovery with the other branches.
+            let is_shared = raised_by_faults && self.has_forks;
+            self.error_clauses(if is_shared { &[] } else { &using })?;
             self.close("");
             items.push(self.taken());
         }
         Ok(items)
+    }
+
+    /// The faults that raise an error, of those that raise none yet; whether any does.
+    fn faults(&mut self, left: &mut Vec<&'static str>) -> Result<bool> {
+        if !self.one_in(3)? {
+            return Ok(false);
+        }
+        let mut chosen = Vec::new();
+        for _ in 0..=self.below(2)? {
+            if !left.is_empty() {
+                chosen.push(left.swap_remove(self.below(left.len())?));
+            }
+        }
+        if !chosen.is_empty() {
+            self.line(&format!("on {}", chosen.join(", ")));
+        }
+        Ok(!chosen.is_empty())
+    }
+
+    /// `give up after …`
+    fn bounds(&mut self, is_by_reversing: bool) -> Result<()> {
+        if self.one_in(3)? {
+            let times = format!("{} times", self.below(4)? + 1);
+            let bounds = match is_by_reversing && self.one_in(2)? {
+                true => {
+                    self.choose(&[format!("{times}, 1.5 min"), "20 mm * 2, 90 s".to_owned()])?
+                }
+                false => times,
+            };
+            self.line(&format!("give up after {bounds}"));
+        }
+        Ok(())
+    }
+
+    /// `cleanup { … }`
+    pub(super) fn cleanup(&mut self) -> Result<String> {
+        self.frame = Frame::new();
+        self.budget = self.budget.max(6);
+        self.open("cleanup");
+        self.statements(6)?;
+        self.close("");
+        Ok(self.taken())
     }
 
     fn error_clauses(&mut self, using: &[String]) -> Result<()> {
@@ -314,10 +378,15 @@ impl Generator<'_, '_> {
             true => None,
             false => Some(self.choose(using)?),
         };
-        match (sequence, self.below(4)?) {
+        let how = self.below(4)?;
+        self.bounds(how == 2)?;
+        match (sequence, how) {
             (Some(sequence), 0 | 1) => self.line(&format!("recover using {sequence}")),
             (sequence, 2) => {
-                self.line("recover by reversing escalating up to 3 actions, perturbed 1 mm");
+                let depth =
+                    self.choose(&["", "escalating ", "escalating doubling ", "learned "])?;
+                let change = self.choose(&["perturbed 1 mm", "perturbed at random 0.5 mm"])?;
+                self.line(&format!("recover by reversing {depth}up to 3 actions, {change}"));
                 let sequence = sequence.map(|name| format!("using {name}"));
                 let otherwise = sequence.unwrap_or_else(|| "operator".to_owned());
                 self.line(&format!("otherwise {otherwise}"));

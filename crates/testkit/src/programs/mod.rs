@@ -139,6 +139,9 @@ impl<'g, 'u> Generator<'g, 'u> {
         self.has_forks = self.options.allow_forks && self.one_in(4)?;
         items.extend(self.sequences()?);
         items.push(self.main()?);
+        if self.options.allow_errors && self.one_in(4)? {
+            items.push(self.cleanup()?);
+        }
         items.extend(self.error_declarations()?);
         items.append(&mut self.of_branches);
         // Declarations see each other in any order.

@@ -5,7 +5,7 @@ use super::statement::speed;
 use super::value::Value;
 use super::{Counter, Interpreter, Run, Trap};
 use obverse_syntax::ast::{
-    Block, Expression, Primitive, ReverseParameter, Sequence, Statement, StatementKind,
+    Block, Expression, Primitive, ReverseParameter, Statement, StatementKind,
 };
 
 /// Where the program goes on after a statement.
@@ -24,11 +24,11 @@ pub(super) enum Flow {
 }
 
 impl<'p> Interpreter<'p, '_> {
-    /// The body of a sequence, as often as its errors want it again.
-    pub(super) fn sequence(&mut self, sequence: &'p Sequence<'p>) -> Run<Flow> {
+    /// The body of a sequence, or of the cleanup, as often as its errors want it again.
+    pub(super) fn body(&mut self, body: &'p Block<'p>) -> Run<Flow> {
         let settings = (self.speed, self.tool);
         loop {
-            let flow = self.block(&sequence.body)?;
+            let flow = self.block(body)?;
             if flow != Flow::Again {
                 return Ok(flow);
             }
@@ -116,9 +116,10 @@ impl<'p> Interpreter<'p, '_> {
             | StatementKind::SkipInReverse(block)
             | StatementKind::KeepInReverse(block)
             | StatementKind::ReplaceInReverse { block, .. } => self.block(block),
-            StatementKind::Advance(_) | StatementKind::Call { .. } | StatementKind::Throw(_) => {
-                self.fallible(statement)
-            }
+            StatementKind::Advance(_)
+            | StatementKind::Call { .. }
+            | StatementKind::Throw(_)
+            | StatementKind::Requires { .. } => self.fallible(statement),
             _ => {
                 self.simple(statement)?;
                 Ok(Flow::Next)
@@ -140,8 +141,15 @@ impl<'p> Interpreter<'p, '_> {
                     self.call_and_respond(name.value, &arguments, &mut site)?
                 }
                 StatementKind::Throw(name) => {
-                    self.raised.push(name.value);
+                    self.raise(name.value);
                     self.respond_to_throw(name.value, &mut site)?
+                }
+                StatementKind::Requires { condition, error } => {
+                    if self.value(condition)?.holds() {
+                        return Ok(Flow::Next);
+                    }
+                    self.raise(error.value);
+                    self.respond_to_throw(error.value, &mut site)?
                 }
                 _ => return Ok(Flow::Next),
             };

@@ -8,22 +8,23 @@ use super::control::Flow;
 use super::value::Value;
 use super::{Interpreter, Run};
 use obverse_syntax::ast::{
-    Behaviour, Block, Continuation, ErrorClause, ErrorDeclaration, Item, MoveClause, Otherwise,
-    Recovery, Respond, Sequence, Severity, Statement, StatementKind,
+    Behaviour, Bound, Continuation, ErrorClause, ErrorDeclaration, Item, MoveClause, Otherwise,
+    Recovery, Respond, Sequence, Severity,
 };
+use std::collections::BTreeSet;
 
 /// How often something is done again before that is given up.
-const MAX_ROUNDS: u32 = 3;
+const MAX_ROUNDS: u64 = 3;
 
 /// An action while its errors are responded to.
 #[derive(Default)]
 pub(super) struct Site {
     /// How often it has been done again.
-    rounds: u32,
+    rounds: u64,
 }
 
 /// What is done about an error.
-enum Response<'p> {
+pub(super) enum Response<'p> {
     Ignore,
     Stop,
     Recover { using: Option<&'p str>, then: Continuation },
@@ -38,7 +39,7 @@ impl<'p> Interpreter<'p, '_> {
             while self.call_and_respond(main.name.value, &[], &mut site)?.is_none() {
                 self.step()?;
             }
-            if !std::mem::take(&mut self.restarts) || rounds == MAX_ROUNDS {
+            if !std::mem::take(&mut self.restarts) || rounds >= self.most_restarts() {
                 return Ok(());
             }
             rounds += 1;
@@ -46,6 +47,14 @@ impl<'p> Interpreter<'p, '_> {
             self.clear_restarting();
             self.first_values()?;
         }
+    }
+
+    /// How often the program begins again: as often as one of its errors says.
+    fn most_restarts(&self) -> u64 {
+        let errors = self.in_order(|error| {
+            matches!(response(error), Response::Recover { then: Continuation::Program, .. })
+        });
+        errors.into_iter().map(most_rounds).max().unwrap_or(0)
     }
 
     /// The program begins again: the errors that want that are dealt with.
@@ -131,11 +140,24 @@ impl<'p> Interpreter<'p, '_> {
             Continuation::Sequence => self.frame().rounds,
             _ => 0,
         };
-        let gives_up = self.is_recovering || rounds >= MAX_ROUNDS;
-        if gives_up || !self.recover(using)? {
+        if self.is_recovering || rounds >= most_rounds(error) {
             return Ok(Some(Flow::Leave));
         }
-        Ok(self.go_on(error, then, site))
+        let is_set_aside =
+            using.is_some() && self.raised_in_recoveries().contains(error.name.value);
+        if is_set_aside {
+            self.clear(error.name.value);
+        }
+        let has_recovered = self.recover(using)?;
+        let stays = !has_recovered || matches!(then, Continuation::Program | Continuation::Stop);
+        if is_set_aside && stays {
+            self.clear(error.name.value);
+            self.raised.push(error.name.value);
+        }
+        if !has_recovered {
+            return Ok(Some(Flow::Leave));
+        }
+        Ok(self.go_on(error, then, !is_set_aside, site))
     }
 
     /// How the program goes on after a recovery.
@@ -143,6 +165,7 @@ impl<'p> Interpreter<'p, '_> {
         &mut self,
         error: &'p ErrorDeclaration<'p>,
         then: Continuation,
+        is_pending: bool,
         site: &mut Site,
     ) -> Option<Flow> {
         match then {
@@ -151,7 +174,8 @@ impl<'p> Interpreter<'p, '_> {
                 self.restarts = true;
                 return Some(Flow::Leave);
             }
-            _ => self.clear(error.name.value),
+            _ if is_pending => self.clear(error.name.value),
+            _ => {}
         }
         match then {
             Continuation::Action => {
@@ -187,8 +211,16 @@ impl<'p> Interpreter<'p, '_> {
         Ok(true)
     }
 
+    /// An error is pending; one that is so until the sequence ends is pending once.
+    pub(super) fn raise(&mut self, name: &'p str) {
+        let is_later = self.names.errors.get(name).is_some_and(|error| is_for_caller(error));
+        if !is_later || !self.raised.contains(&name) {
+            self.raised.push(name);
+        }
+    }
+
     /// An error is dealt with: its oldest entry goes.
-    fn clear(&mut self, name: &str) {
+    pub(super) fn clear(&mut self, name: &str) {
         if let Some(place) = self.raised.iter().position(|raised| *raised == name) {
             self.raised.remove(place);
         }
@@ -196,12 +228,13 @@ impl<'p> Interpreter<'p, '_> {
 
     /// The errors that a sequence leaves to be responded to where it was called.
     fn left_to_caller(&self, sequence: &'p Sequence<'p>) -> Vec<&'p ErrorDeclaration<'p>> {
-        let mut thrown = Vec::new();
-        self.thrown_by_block(&sequence.body, &mut thrown);
-        self.in_order(|error| thrown.contains(&error.name.value) && is_for_caller(error))
+        let mut raised = BTreeSet::new();
+        self.raised_by(&sequence.body, &mut raised, &mut Vec::new());
+        self.in_order(|error| raised.contains(error.name.value) && is_for_caller(error))
     }
 
-    /// Errors in the order of their declarations.
+    /// Errors in the order in which they are responded to: the worst first, and of those alike the
+    /// one that is declared first.
     fn in_order(
         &self,
         is_wanted: impl Fn(&ErrorDeclaration<'p>) -> bool,
@@ -210,25 +243,13 @@ impl<'p> Interpreter<'p, '_> {
             Item::Error(error) => Some(error),
             _ => None,
         });
-        errors.filter(|error| is_wanted(error)).collect()
-    }
-
-    fn thrown_by_block(&self, block: &'p Block<'p>, thrown: &mut Vec<&'p str>) {
-        for statement in &block.statements {
-            match &statement.kind {
-                StatementKind::Throw(name) => thrown.push(name.value),
-                StatementKind::Advance(name) => thrown.extend(self.thrown_by_move(name.value)),
-                _ => {
-                    for block in blocks_of(statement) {
-                        self.thrown_by_block(block, thrown);
-                    }
-                }
-            }
-        }
+        let mut wanted: Vec<_> = errors.filter(|error| is_wanted(error)).collect();
+        wanted.sort_by_key(|error| rank(error));
+        wanted
     }
 
     /// The errors that an advanced move throws.
-    fn thrown_by_move(&self, name: &str) -> Vec<&'p str> {
+    pub(super) fn thrown_by_move(&self, name: &str) -> Vec<&'p str> {
         let clauses = self.names.moves.get(name).map_or(&[][..], |guarded| &guarded.clauses);
         let behaviours = clauses.iter().flat_map(|clause| match &clause.value {
             MoveClause::OnSuccess(behaviours) | MoveClause::OnFailure(behaviours) => {
@@ -236,48 +257,55 @@ impl<'p> Interpreter<'p, '_> {
             }
             _ => &[],
         });
-        behaviours
-            .filter_map(|behaviour| match &behaviour.value {
-                Behaviour::Throw(name) => Some(name.value),
-                _ => None,
-            })
-            .collect()
+        let thrown = behaviours.filter_map(|behaviour| match &behaviour.value {
+            Behaviour::Throw(name) => Some(name.value),
+            _ => None,
+        });
+        let unmet = clauses.iter().filter_map(|clause| Self::thrown_if_unmet(&clause.value));
+        thrown.chain(unmet).collect()
     }
 }
 
-/// The blocks of a statement that are run going forward.
-fn blocks_of<'p>(statement: &'p Statement<'p>) -> Vec<&'p Block<'p>> {
-    match &statement.kind {
-        StatementKind::If { then, otherwise, .. } => {
-            std::iter::once(then).chain(otherwise).collect()
-        }
-        StatementKind::WaitUntil { otherwise, .. } => otherwise.iter().collect(),
-        StatementKind::While { body, .. }
-        | StatementKind::Repeat { body, .. }
-        | StatementKind::For { body, .. }
-        | StatementKind::Loop(body) => vec![body],
-        StatementKind::Speed { block, .. } | StatementKind::Tool { block, .. } => {
-            block.iter().collect()
-        }
-        StatementKind::Fork(branches) => branches.iter().collect(),
-        StatementKind::Irreversible { block, .. }
-        | StatementKind::WithInReverse { block, .. }
-        | StatementKind::KeepInReverse(block)
-        | StatementKind::SkipInReverse(block)
-        | StatementKind::ReplaceInReverse { block, .. } => vec![block],
-        _ => Vec::new(),
+/// How bad an error is, the worst first.
+fn rank(error: &ErrorDeclaration<'_>) -> u8 {
+    let severity = error.clauses.iter().find_map(|clause| match &clause.value {
+        ErrorClause::Severity(severity) => Some(*severity),
+        _ => None,
+    });
+    match severity {
+        Some(Severity::Fatal) => 0,
+        Some(Severity::Recoverable) | None => 1,
+        Some(Severity::Warning) => 2,
     }
+}
+
+/// How often an error has something done again.
+fn most_rounds(error: &ErrorDeclaration<'_>) -> u64 {
+    let mut most = None;
+    for clause in &error.clauses {
+        match &clause.value {
+            ErrorClause::Recover(Recovery::Reversing { .. }) => return MAX_ROUNDS,
+            ErrorClause::GiveUp(bounds) => {
+                most = bounds.iter().find_map(|bound| match bound {
+                    Bound::Attempts(times) => Some(times.value),
+                    Bound::Cost(_) => None,
+                });
+            }
+            _ => {}
+        }
+    }
+    most.unwrap_or(MAX_ROUNDS)
 }
 
 /// Whether an error is responded to where the sequence that raised it was called.
-fn is_for_caller(error: &ErrorDeclaration<'_>) -> bool {
+pub(super) fn is_for_caller(error: &ErrorDeclaration<'_>) -> bool {
     let is_after_sequence =
         |clause: &ErrorClause<'_>| matches!(clause, ErrorClause::Respond(Respond::AfterSequence));
     error.clauses.iter().any(|clause| is_after_sequence(&clause.value))
 }
 
 /// What an error's declaration says is done about it.
-fn response<'p>(error: &'p ErrorDeclaration<'p>) -> Response<'p> {
+pub(super) fn response<'p>(error: &'p ErrorDeclaration<'p>) -> Response<'p> {
     let mut severity = Severity::Recoverable;
     let mut reverses = false;
     let mut using = None;
@@ -289,7 +317,10 @@ fn response<'p>(error: &'p ErrorDeclaration<'p>) -> Response<'p> {
             ErrorClause::Recover(Recovery::Using(name))
             | ErrorClause::Otherwise(Otherwise::Using(name)) => using = Some(name.value),
             ErrorClause::Then(value) => then = Some(*value),
-            ErrorClause::Otherwise(_) | ErrorClause::Respond(_) => {}
+            ErrorClause::Otherwise(_)
+            | ErrorClause::Respond(_)
+            | ErrorClause::On(_)
+            | ErrorClause::GiveUp(_) => {}
         }
     }
     let has_recovery = reverses || using.is_some();

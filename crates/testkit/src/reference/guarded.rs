@@ -19,7 +19,7 @@ const PERTURBATION_M: f64 = 1e-3;
 /// What an advanced move says.
 #[derive(Default)]
 struct Clauses<'p> {
-    requires: Option<&'p Expression<'p>>,
+    requires: Option<(&'p Expression<'p>, Option<&'p str>)>,
     way: Option<Way<'p>>,
     limit: Option<&'p Expression<'p>>,
     speed: Option<SpeedWord>,
@@ -72,11 +72,11 @@ impl<'p> Interpreter<'p, '_> {
 
     fn guarded(&mut self, clauses: &Clauses<'p>, way: Way<'p>) -> Run<()> {
         let initial = self.cell.joints();
-        if let Some(condition) = clauses.requires
+        if let Some((condition, otherwise)) = clauses.requires
             && !self.value(condition)?.holds()
         {
-            let error = clauses.on_failure.throws.ok_or(Trap::Required)?;
-            self.raised.push(error);
+            let error = otherwise.or(clauses.on_failure.throws).ok_or(Trap::Required)?;
+            self.raise(error);
             return Ok(());
         }
         let numbers = self.numbers(clauses, way)?;
@@ -85,7 +85,7 @@ impl<'p> Interpreter<'p, '_> {
         if aftermath.returns {
             self.go(Goal::Joints(initial), Path::Linear, None)?;
         }
-        self.raised.extend(aftermath.throws);
+        aftermath.throws.into_iter().for_each(|error| self.raise(error));
         Ok(())
     }
 
@@ -165,7 +165,10 @@ fn gather<'p>(guarded: &'p AdvancedMove<'p>) -> Clauses<'p> {
     let mut clauses = Clauses::default();
     for clause in &guarded.clauses {
         match &clause.value {
-            MoveClause::Requires(condition) => clauses.requires = Some(condition),
+            MoveClause::Requires { condition, otherwise } => {
+                let otherwise = otherwise.map(|error| error.value);
+                clauses.requires = Some((condition, otherwise));
+            }
             MoveClause::Distance { distance, heading, frame } => {
                 clauses.way = Some(Way { distance, heading: heading.value, frame: *frame });
             }

@@ -6,6 +6,7 @@
 //! types are not checked again. It knows nothing of going back: the copies say what a machine that
 //! goes back has to find again.
 
+mod cleanup;
 mod control;
 mod error;
 mod expression;
@@ -152,7 +153,7 @@ struct Frame<'p> {
     /// The loops that count around the statement in hand.
     counters: Vec<Counter<'p>>,
     /// How often its errors had the sequence begin again.
-    rounds: u32,
+    rounds: u64,
 }
 
 /// What motions that go back have instead of what they had.

@@ -4,8 +4,8 @@ use super::expression::{Readings, evaluate};
 use super::value::{Value, si};
 use obverse_geometry::{JointConfiguration, Pose};
 use obverse_syntax::ast::{
-    AdvancedMove, ErrorDeclaration, Expression, IoOperation, Item, ItemDeclaration, Program,
-    Sequence, Signal, Vector,
+    AdvancedMove, Cleanup, ErrorDeclaration, Expression, IoOperation, Item, ItemDeclaration,
+    Program, Sequence, Signal, Vector,
 };
 use std::collections::HashMap;
 
@@ -24,6 +24,8 @@ pub(super) struct Names<'p> {
     pub(super) items: Vec<&'p ItemDeclaration<'p>>,
     /// The sequence that the program begins with.
     pub(super) main: Option<&'p Sequence<'p>>,
+    /// What runs at its end.
+    pub(super) cleanup: Option<&'p Cleanup<'p>>,
 }
 
 impl<'p> Names<'p> {
@@ -44,6 +46,7 @@ impl<'p> Names<'p> {
                 Item::Signal(entry) => {
                     names.signals.insert(entry.name.value, entry.number.value);
                 }
+                Item::Cleanup(cleanup) => names.cleanup = Some(cleanup),
                 Item::Allow(_) | Item::Cell(_) | Item::Import(_) | Item::Variable(_) => {}
             }
         }

@@ -18,9 +18,10 @@ impl<'p> Interpreter<'p, '_> {
     pub(super) fn program(&mut self) -> Run<()> {
         self.first_values()?;
         match self.names.main {
-            Some(main) => self.begin(main),
-            None => Ok(()),
+            Some(main) => self.begin(main)?,
+            None => return Ok(()),
         }
+        self.clean_up()
     }
 
     /// The variables of the program get their first values.
@@ -52,7 +53,7 @@ impl<'p> Interpreter<'p, '_> {
             locals: parameters.collect(),
             ..Frame::default()
         };
-        self.within(frame, |interpreter| interpreter.sequence(sequence))
+        self.within(frame, |interpreter| interpreter.body(&sequence.body))
     }
 
     /// Do something in a frame of its own. Settings that are changed in it hold to its end.
