@@ -661,9 +661,10 @@ impl Body<'_, '_> {
 
     fn error(&mut self) -> Result<()> {
         let error = ErrorId(u16::from(self.pick(2)?));
-        match self.pick(3)? {
+        match self.pick(4)? {
             0 => drop(self.code.push(op::ErrorRaise { error })),
             1 => drop(self.code.push(op::ErrorClear { error })),
+            2 => drop(self.code.push(op::ErrorDue { error })),
             _ => {
                 self.code.push(op::PushBool { value: Level::High });
                 self.code.push(op::Require { prefix: P, reason: ReasonId(0) });
