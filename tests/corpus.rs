@@ -122,7 +122,7 @@ fn not_inverted(folder: &mut Folder, name: &str) -> Vec<Found> {
     let text = folder.0.get(name).cloned().unwrap_or_default();
     match invert_files(name, &text, "main", folder) {
         (sources, Err(NoInverse::Diagnosed(diagnostics))) => found_in(&sources, &diagnostics),
-        (_, Ok(_) | Err(NoInverse::UnknownSequence(_))) => Vec::new(),
+        (_, Ok(_) | Err(NoInverse::UnknownSequence(_) | NoInverse::OtherKind(_))) => Vec::new(),
     }
 }
 

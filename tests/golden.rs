@@ -250,7 +250,9 @@ fn inverted(file: &str) -> Result<String, Failed> {
     let found = match inverse {
         Ok(_) => Placed::new(),
         Err(NoInverse::Diagnosed(diagnostics)) => placed(&sources, &diagnostics),
-        Err(NoInverse::UnknownSequence(_)) => return Err("it has no `main`".into()),
+        Err(NoInverse::UnknownSequence(_) | NoInverse::OtherKind(_)) => {
+            return Err("it has no `main`".into());
+        }
     };
     if found != said {
         return Err(format!("it says that it has {said:?}, and it has {found:?}").into());

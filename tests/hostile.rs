@@ -184,7 +184,8 @@ fn sources_with_altered_words() {
 
 #[test]
 fn workcells_with_altered_words() {
-    let cells = texts("programs", "toml");
+    let mut cells = texts("programs", "toml");
+    cells.extend(texts("crates/sim/tests", "toml"));
     withstands(hostile::workcell, 5, |random| {
         let text = &cells[random.below(cells.len())];
         if random.below(2) == 0 { random.reworded(text) } else { random.altered(text.as_bytes()) }

@@ -6,8 +6,8 @@
 
 use arbitrary::{Result, Unstructured};
 use obverse_testkit::{
-    files, format_laws, front_laws, invert_laws, laws, machine_laws, preflight_laws, reach_laws,
-    word_laws,
+    always_laws, files, format_laws, front_laws, invert_laws, laws, machine_laws, preflight_laws,
+    reach_laws, recovery_laws, word_laws,
 };
 use std::collections::BTreeSet;
 
@@ -68,6 +68,7 @@ laws! {
         write_ahead_with_blocks >= 60
         turns >= 12
         round_trips >= 100;
+    recovery_laws(RUNS): goes_back_along_the_trail >= 60 recovers_within_bounds >= 5;
     preflight_laws(RUNS): foretells >= 60 foretells_of_modules >= 10;
     format_laws(MANY_RUNS): formats >= 100 cut_off >= 100;
     invert_laws(MANY_RUNS):
@@ -75,6 +76,7 @@ laws! {
         inverse_goes_back >= 45
         inverts_anything_twice >= 20;
     laws(RUNS): compiles >= 100 agrees_forward >= 95 agrees_backward >= 75;
+    always_laws(RUNS): always_leads_where_the_arm_was >= 15;
     files(RUNS): files_are_one_program >= 60;
     word_laws(RUNS):
         words_restore_the_program >= 50

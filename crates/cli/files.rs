@@ -15,6 +15,14 @@ pub(crate) const MAX_FILE_BYTES: u64 = 256 << 20;
 /// # Errors
 /// Why not, in words that follow the file's name.
 pub(crate) fn read(path: &Path) -> Result<Vec<u8>, String> {
+    read_at_most(path, MAX_FILE_BYTES)
+}
+
+/// Read a file, if it is one and has at most so many bytes.
+///
+/// # Errors
+/// Why not, in words that follow the file's name.
+pub(crate) fn read_at_most(path: &Path, most: u64) -> Result<Vec<u8>, String> {
     let cannot = |error: std::io::Error| format!("cannot be read: {}", plain(&error));
     if fs::metadata(path).map_err(cannot)?.is_dir() {
         return Err("this is a folder; name a file in it".to_owned());
@@ -23,10 +31,10 @@ pub(crate) fn read(path: &Path) -> Result<Vec<u8>, String> {
     let mut file = File::open(path).map_err(cannot)?;
     let before = file.metadata().map_err(cannot)?;
     // What a device or a pipe will give cannot be asked beforehand.
-    file.by_ref().take(MAX_FILE_BYTES + 1).read_to_end(&mut bytes).map_err(cannot)?;
+    file.by_ref().take(most.saturating_add(1)).read_to_end(&mut bytes).map_err(cannot)?;
     let length = bytes.len() as u64;
-    if length > MAX_FILE_BYTES {
-        return Err(format!("larger than {} MiB, the most allowed", MAX_FILE_BYTES >> 20));
+    if length > most {
+        return Err(format!("larger than {} MiB, the most allowed", most >> 20));
     }
     if has_changed(&before, &file.metadata().map_err(cannot)?, length) {
         return Err("it changed while it was read; try again when it is complete".to_owned());

@@ -52,6 +52,16 @@ pub(crate) fn bytes(path: &Path) -> Result<Vec<u8>, Problem> {
     files::read(path).map_err(|why| Problem::of_file(path, why))
 }
 
+/// Refuse a file whose name says that it is no source text, which alone can be treated so.
+pub(crate) fn require_source(path: &Path, treated: &str) -> Result<(), Problem> {
+    let extension = path.extension().and_then(|extension| extension.to_str()).unwrap_or("");
+    if matches!(extension, "obvasm" | "obc" | "tape" | "toml") {
+        let why = format!("`.{extension}` is not for source text, which alone is {treated}");
+        return Err(Problem::of_file(path, why));
+    }
+    Ok(())
+}
+
 /// The module of a file, not verified, with the source text and its warnings, if there is one. It
 /// is a module by its first bytes, assembly text by its name (`.obvasm`), and source otherwise.
 pub(crate) fn module(path: &Path) -> Result<(Module, Option<Diagnosed>), Problem> {
@@ -140,9 +150,16 @@ pub(crate) fn workcell(
     named: Option<&Path>,
     seed: u64,
 ) -> Result<(Sim, Workcell), Problem> {
+    let (cell, file) = cell(program, named)?;
+    Ok((Sim::new(&cell, seed), file))
+}
+
+/// The description of the workcell that a program runs in, and its file; a bare arm where none is
+/// named.
+pub(crate) fn cell(program: &Program, named: Option<&Path>) -> Result<(Cell, Workcell), Problem> {
     let Some(path) = workcell_path(program, named) else {
         let bare = Workcell { name: "a bare arm".to_owned(), text: None };
-        return Ok((Sim::new(&Cell::bare(), seed), bare));
+        return Ok((Cell::bare(), bare));
     };
     let raw = bytes(&path).map_err(|problem| match named {
         Some(_) => problem,
@@ -155,7 +172,7 @@ pub(crate) fn workcell(
         Problem::several(vec![Message::of_file(&path, error.message).at(Some(place))])
     })?;
     let file = Workcell { name: path.display().to_string(), text: Some(text) };
-    Ok((Sim::new(&cell, seed), file))
+    Ok((cell, file))
 }
 
 /// What is wrong with a workcell file, and where the program names it.

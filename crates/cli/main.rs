@@ -58,6 +58,8 @@ enum Command {
     Reach(commands::reach::Arguments),
     /// Show the instructions of a program, with the class of each.
     Dis(commands::dis::Arguments),
+    /// Try a program over many seeded assemblies, by one strategy or several.
+    Trials(commands::trials::Arguments),
     /// Show what is on a recorded tape.
     Tape(commands::tape::Arguments),
     /// Show the instruction set.
@@ -77,6 +79,7 @@ impl Command {
             Self::Back(arguments) => arguments.json,
             Self::Dis(arguments) => arguments.json,
             Self::Reach(arguments) => arguments.json,
+            Self::Trials(arguments) => arguments.json,
             Self::Tape(arguments) => arguments.json,
             Self::Explain(arguments) => arguments.json,
             Self::Check(_) | Self::Isa(_) => false,
@@ -107,6 +110,7 @@ fn main() -> ExitCode {
         Command::Back(arguments) => commands::back::run(&arguments),
         Command::Reach(arguments) => commands::reach::run(&arguments),
         Command::Dis(arguments) => commands::dis::run(&arguments),
+        Command::Trials(arguments) => commands::trials::run(&arguments),
         Command::Tape(arguments) => commands::tape::run(&arguments),
         Command::Isa(arguments) => commands::isa::run(&arguments),
         Command::Explain(arguments) => commands::explain::run(&arguments),

@@ -21,9 +21,10 @@ fn has_line(story: &str, words: &[&str]) -> bool {
 #[test]
 fn the_help_lists_the_commands_and_the_exit_codes() {
     let help = Bench::new("help").ends(0, &["--help"]).stdout;
-    for command in
-        ["check", "fmt", "invert", "build", "run", "back", "dis", "reach", "tape", "isa", "explain"]
-    {
+    for command in [
+        "check", "fmt", "invert", "build", "run", "back", "dis", "reach", "trials", "tape", "isa",
+        "explain",
+    ] {
         assert!(help.contains(&format!("\n  {command} ")), "{command} in\n{help}");
     }
     let codes: Vec<&str> = help.lines().skip_while(|line| *line != "Exit codes:").collect();

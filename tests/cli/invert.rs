@@ -24,6 +24,10 @@ fn what_nobody_knows_is_left_to_who_calls_the_inverse() {
     let inverse = bench.ends(0, &["invert", "sheets.obv", "lay"]).stdout;
     assert!(inverse.contains("// `main` is empty:"), "{inverse}");
     assert!(inverse.ends_with("sequence main {}\n"), "{inverse}");
+    bench.write("lay_back.obv", &inverse);
+    bench.ends(0, &["fmt", "--check", "lay_back.obv"]);
+    let checked = bench.ends(0, &["check", "lay_back.obv"]).stdout;
+    assert!(checked.starts_with("lay_back.obv: correct, no warnings;"), "{checked}");
     let lines = bench.ends(0, &["invert", "--json", "sheets.obv", "lay"]).json();
     assert_eq!(lines[0]["type"], "inverse");
     assert_eq!(
@@ -61,5 +65,12 @@ fn wrong_input_is_refused() {
     bench.refuses(&["invert", "wrong.obv", "main"], &["[E0101]", "nowhere"]);
     bench.refuses(&["invert", "binary.obv", "main"], &["[E0007]"]);
     bench.refuses(&["invert", "none.obv", "main"], &["cannot be read"]);
+    let assembly = bench.ends(0, &["dis", "tower.obv"]).stdout;
+    bench.write("tower.obvasm", &assembly);
+    bench.refuses(&["invert", "tower.obvasm", "main"], &["`.obvasm` is not for source text"]);
+    bench.refuses(
+        &["invert", "tower.obv", "grip"],
+        &["`grip` is an I/O operation", "put `io grip` into an action"],
+    );
     assert_eq!(bench.refuses_as_json(&["invert", "--json", "tower.obv", "pock"]).len(), 1);
 }

@@ -7,5 +7,6 @@ mod imports;
 mod invert;
 mod moves;
 mod support;
+mod trials;
 mod wrong_files;
 mod wrong_input;

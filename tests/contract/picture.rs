@@ -304,6 +304,11 @@ impl Words<'_> {
             Goal::Offset { from, by_m: [x, y, z], frame } => {
                 format!("from {} by {x:?} {y:?} {z:?} in {frame:?}", self.name_of(&from.0))
             }
+            Goal::Turned { from, angle_rad, advance_m, axis, frame } => {
+                let axis = format!("{axis:?}").replace("Plus", "+").replace("Minus", "-");
+                let from = self.name_of(&from.0);
+                format!("from {from} turned {angle_rad:?} on {advance_m:?} {axis} in {frame:?}")
+            }
         };
         let mut text = format!("move {path} {goal}").to_lowercase();
         if let Some(limit_n) = motion.force_limit_n {

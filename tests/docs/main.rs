@@ -7,9 +7,11 @@
 
 mod console;
 mod example;
+mod grammar;
 mod page;
 mod reader;
 mod words;
+mod workcell;
 
 use page::{Block, Page};
 use reader::Reader;

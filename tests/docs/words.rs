@@ -1,5 +1,7 @@
-//! What the reference of the language owes the grammar: every rule, word, unit and key is there.
+//! What the reference of the language owes the grammar: every rule with all its alternatives, word,
+//! unit and key is there.
 
+use crate::grammar::Grammar;
 use crate::page::{Page, ROOT};
 use obverse_syntax::{FREE_WORDS, RESERVED_WORDS, UNITS};
 use std::collections::BTreeSet;
@@ -53,6 +55,28 @@ fn every_rule_of_the_grammar_is_named() {
 }
 
 #[test]
+fn every_alternative_of_every_rule_is_in_an_example() {
+    let grammar = Grammar::of_page(&source("crates/syntax/GRAMMAR.md"));
+    let page = reference();
+    let mut used = BTreeSet::new();
+    for block in page.blocks().iter().filter(|block| block.language() == "obv") {
+        if block.says("wrong") {
+            continue;
+        }
+        let rule = if block.says("statements") { "statement" } else { "program" };
+        match grammar.used(rule, &block.text()) {
+            Ok(parts) => used.extend(parts),
+            Err(rest) => panic!("{}:{}: no {rule}: {rest}", page.name, block.line),
+        }
+    }
+    let missing: Vec<&str> = (0..grammar.parts.len())
+        .filter(|part| !used.contains(part))
+        .map(|part| grammar.parts[part].as_str())
+        .collect();
+    fails(&missing, "alternatives");
+}
+
+#[test]
 fn every_word_of_the_language_is_in_an_example() {
     let words = words();
     let known = RESERVED_WORDS.iter().chain(FREE_WORDS);
@@ -69,23 +93,4 @@ fn every_unit_is_in_an_example() {
         .collect();
     let missing: Vec<&str> = UNITS.iter().copied().filter(|unit| !words.contains(*unit)).collect();
     fails(&missing, "units");
-}
-
-#[test]
-fn every_key_of_a_workcell_file_is_named() {
-    let keys = source("crates/sim/src/cell/file.rs");
-    let keys = keys.lines().filter_map(|line| line.trim().strip_prefix("pub(super) "));
-    let keys: Vec<&str> = keys
-        .filter_map(|field| field.split_once(':'))
-        .map(|(name, _)| name)
-        .filter(|name| {
-            name.bytes().all(|b| b.is_ascii_lowercase() || b.is_ascii_digit() || b == b'_')
-        })
-        .collect();
-    assert!(keys.len() > 40, "{keys:?}");
-    let page = reference().text;
-    let names: BTreeSet<&str> =
-        page.split(|c: char| !c.is_ascii_alphanumeric() && c != '_').collect();
-    let missing: Vec<&str> = keys.into_iter().filter(|key| !names.contains(key)).collect();
-    fails(&missing, "keys");
 }

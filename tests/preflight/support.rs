@@ -66,7 +66,7 @@ pub(crate) fn crowded() -> Cell {
     let (pose, offset) = (Pose::identity(), OffsetSpec::default());
     let parts = (0..125_000).map(speck).collect();
     let name = "dust".to_owned();
-    cell.fixtures.push(FixtureSpec { name, pose, offset, parts, holes: Vec::new() });
+    cell.fixtures.push(FixtureSpec { name, pose, on: None, offset, parts, holes: Vec::new() });
     cell
 }
 

@@ -83,11 +83,7 @@ fn is_standard_input(path: &Path) -> bool {
 }
 
 fn formatted(path: &Path) -> std::result::Result<Formatted, Problem> {
-    let extension = path.extension().and_then(|extension| extension.to_str()).unwrap_or("");
-    if matches!(extension, "obvasm" | "obc" | "tape" | "toml") {
-        let why = format!("`.{extension}` is not for source text, which alone is formatted");
-        return Err(Problem::of_file(path, why));
-    }
+    load::require_source(path, "formatted")?;
     let raw = match is_standard_input(path) {
         true => standard_input()?,
         false => load::bytes(path)?,

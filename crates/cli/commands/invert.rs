@@ -24,6 +24,7 @@ pub(crate) struct Arguments {
 
 pub(crate) fn run(arguments: &Arguments) -> Result {
     let path = &arguments.file;
+    load::require_source(path, "inverted")?;
     let raw = load::bytes(path)?;
     let folder = path.with_file_name("");
     let name = path.file_name().unwrap_or(path.as_os_str()).to_string_lossy().into_owned();
@@ -39,6 +40,14 @@ pub(crate) fn run(arguments: &Arguments) -> Result {
         Err(NoInverse::UnknownSequence(meant)) => {
             let hint = meant.map_or_else(String::new, |meant| format!("; did you mean `{meant}`?"));
             let why = format!("there is no sequence or action `{}`{hint}", arguments.sequence);
+            Err(Problem::of_file(path, why))
+        }
+        Err(NoInverse::OtherKind(other)) => {
+            let why = format!(
+                "`{}` is {}, and sequences and actions are inverted; put `{}` into an action, and \
+                 invert that",
+                arguments.sequence, other.kind, other.statement
+            );
             Err(Problem::of_file(path, why))
         }
         Err(NoInverse::Diagnosed(diagnostics)) if is_refusal(&diagnostics) => {

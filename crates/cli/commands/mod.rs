@@ -12,6 +12,7 @@ pub(crate) mod isa;
 pub(crate) mod reach;
 pub(crate) mod run;
 pub(crate) mod tape;
+pub(crate) mod trials;
 
 use crate::Outcome;
 use crate::problem::Problem;

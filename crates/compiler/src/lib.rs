@@ -36,11 +36,12 @@ use allow::Allows;
 use effects::Effects;
 use load::Loaded;
 use obverse_bytecode::Module;
+use obverse_syntax::ast::Program;
 use obverse_syntax::diagnostic::{Diagnostic, Severity};
 use obverse_syntax::sources::Sources;
 use report::Reports;
 
-pub use invert::{Inverse, NoInverse, invert, invert_files};
+pub use invert::{Inverse, NoInverse, OtherKind, invert, invert_files};
 
 /// What became of a program's text.
 #[derive(Clone, Debug)]
@@ -69,13 +70,14 @@ pub fn compile_files(name: &str, source: &str, loader: &mut dyn Loader) -> Compi
     Compiled { module, diagnostics, sources: loaded.sources }
 }
 
-fn compile_loaded(loaded: &Loaded) -> (Option<Module>, Vec<Diagnostic>) {
-    let sources = &loaded.sources;
-    let parsed = merge::parse(loaded);
-    let is_whole = parsed.diagnostics.iter().all(|found| found.severity != Severity::Error);
-    let reports = Reports::new(is_whole, Allows::of(sources, &parsed.program));
-    let (program, mut reports) = check::check(sources, &parsed.program, reports);
-    let module = program.filter(|_| is_whole).and_then(|program| {
+/// The module of a syntax tree whose places are those of the sources.
+fn compile_tree(
+    sources: &Sources,
+    program: &Program<'_>,
+    reports: Reports,
+) -> (Option<Module>, Reports) {
+    let (program, mut reports) = check::check(sources, program, reports);
+    let module = program.filter(|_| reports.is_whole()).and_then(|program| {
         let effects = Effects::of(&program);
         reversal::check(&program, &effects, &mut reports);
         forks::check(&program, &effects, &mut reports);
@@ -85,6 +87,15 @@ fn compile_loaded(loaded: &Loaded) -> (Option<Module>, Vec<Diagnostic>) {
             false => lower::lower(program, sources, &effects, &mut reports),
         }
     });
+    (module, reports)
+}
+
+fn compile_loaded(loaded: &Loaded) -> (Option<Module>, Vec<Diagnostic>) {
+    let sources = &loaded.sources;
+    let parsed = merge::parse(loaded);
+    let is_whole = parsed.diagnostics.iter().all(|found| found.severity != Severity::Error);
+    let reports = Reports::new(is_whole, Allows::of(sources, &parsed.program));
+    let (module, mut reports) = compile_tree(sources, &parsed.program, reports);
     if let Some(module) = &module {
         shortfall::check(sources, &parsed.program, module, &mut reports);
     }

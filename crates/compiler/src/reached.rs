@@ -19,7 +19,14 @@ pub(crate) fn check(
     unnamed: &HashSet<Span>,
     reports: &mut Reports,
 ) {
-    let reached = from_main(program);
+    // What is allowed to be there though nothing names it keeps what it runs.
+    let mut is_allowed = |function: &Function| {
+        let at = function.named;
+        unnamed.contains(&at) && reports.permits(Code::Unused, at.start)
+    };
+    let kept = program.numbered().filter(|(_, function)| is_allowed(function));
+    let begun = kept.map(|(id, _)| id).chain([program.main]).collect();
+    let reached = reached_from(program, begun);
     let (mut first_uses, mut uses) = (vec![None; reached.len()], Vec::new());
     for (id, function) in program.numbered().filter(|(id, _)| !reached[id.index()]) {
         uses_of(program, function, &mut uses);
@@ -50,10 +57,9 @@ pub(crate) fn check(
     }
 }
 
-/// By function: whether the program can come to it.
-fn from_main(program: &Program) -> Vec<bool> {
+/// By function: whether one can come to it from one of these.
+fn reached_from(program: &Program, mut to_visit: Vec<FunctionId>) -> Vec<bool> {
     let mut reached = vec![false; program.functions.len() + 1];
-    let mut to_visit = vec![program.main];
     to_visit.extend(program.cleanup);
     let raised = (0..).zip(&program.module.errors).filter(|(_, error)| !error.faults.is_empty());
     for (error, _) in raised {

@@ -88,6 +88,21 @@ impl Reports {
         obverse_syntax::nearest(word, words.take(budget).inspect(|_| *compared += 1))
     }
 
+    /// Whether a warning of this code at this place is meant.
+    pub(crate) fn permits(&mut self, code: Code, at: u32) -> bool {
+        self.allows.permits(code, at)
+    }
+
+    /// Whether the tree is whole.
+    pub(crate) fn is_whole(&self) -> bool {
+        self.is_whole
+    }
+
+    /// Whether there may have been warnings that were not kept.
+    pub(crate) fn drops_warnings(&self) -> bool {
+        self.warnings.len() >= MAX_KEPT
+    }
+
     /// Warn of each `allow` that allows nothing, now that all warnings have come. With a mistake
     /// in the program not all of them have.
     pub(crate) fn warn_of_useless(&mut self) {

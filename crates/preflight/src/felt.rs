@@ -53,7 +53,9 @@ impl Felt {
         let ends = match &motion.goal {
             Goal::Joints(to) => self.at(to),
             Goal::Pose(_) => None,
-            Goal::Displaced { from, .. } | Goal::Offset { from, .. } => self.at(from),
+            Goal::Displaced { from, .. }
+            | Goal::Offset { from, .. }
+            | Goal::Turned { from, .. } => self.at(from),
         };
         if let (true, Guard::Ends(_)) = (is_stopped, guard) {
             let times = MARGIN * (most_n / after.contact_n()).max(1.0);

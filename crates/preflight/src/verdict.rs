@@ -75,6 +75,8 @@ pub(crate) fn of_fault(fault: &Fault, plan: &Plan, motion: &Motion) -> Verdict {
         Fault::BadCommand { .. }
         | Fault::Missing { .. }
         | Fault::Stopped
+        | Fault::EmergencyStop { .. }
+        | Fault::StoppedShort { .. }
         | Fault::ProtectiveStop { .. } => Reason::BadCommand,
     };
     Verdict { reason, detail: fault.to_string(), fraction, contact, fault: Some(fault.kind()) }

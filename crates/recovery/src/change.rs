@@ -11,8 +11,8 @@ const GOLDEN_ANGLE_RAD: f64 = PI * (3.0 - 2.236_067_977_499_79);
 /// What `lighter` does to a force limit at each attempt.
 const LIGHTER: f64 = 0.8;
 
-/// The changes of an attempt, counted from 1; none where the policy changes nothing. `motion` is the
-/// instruction of the motion that failed; what is random follows from the seed.
+/// The changes of an attempt, counted from 1; none where the policy changes nothing. `motion` is
+/// the instruction of the motion that failed; what is random follows from the seed.
 #[must_use]
 pub fn of_attempt(
     policy: &Reversal,

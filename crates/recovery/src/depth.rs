@@ -51,7 +51,11 @@ impl Question<'_> {
     ///
     /// # Errors
     /// Why there is no way back, or none that would help.
-    pub(crate) fn answer(&self, policy: Policy, memory: &Memory) -> Result<(usize, Why), GiveUp> {
+    pub(crate) fn answer(
+        &self,
+        policy: Policy,
+        memory: &mut Memory,
+    ) -> Result<(usize, Why), GiveUp> {
         let available = self.trail.actions().len();
         if available == 0 {
             return Err(GiveUp::NoWayBack { never: self.trail.never() });
@@ -97,7 +101,7 @@ impl Question<'_> {
         }
     }
 
-    fn learned(&self, furthest: usize, memory: &Memory) -> Result<(usize, Why), GiveUp> {
+    fn learned(&self, furthest: usize, memory: &mut Memory) -> Result<(usize, Why), GiveUp> {
         let costs_s: Vec<f64> =
             (1..=furthest.min(DEPTH_MAX)).map(|depth| self.cost_s(depth)).collect();
         let costs = Costs { by_depth_s: &costs_s, give_up_s: self.give_up_s };

@@ -5,7 +5,7 @@
 
 use crate::recover::{Foresight, Site};
 use crate::trail::Trail;
-use obverse_vm::{Direction, Event, Mark, Observer, Stop};
+use obverse_vm::{Direction, Event, Machine, Mark, Observer, Stop};
 use obverse_workcell::Workcell;
 
 /// The most depths that are tried.
@@ -26,32 +26,59 @@ impl<C: Workcell + Clone> Foresight<C> for Clairvoyant {
     }
 }
 
-/// How long it would take to be past the error, going back so many actions, in seconds of the
-/// workcell's clock; none if it would not be got past.
+/// How long it would take to be past the error, going back so many actions at each attempt, in
+/// seconds of the workcell's clock; none if it would not be got past.
 fn time_s<C: Workcell + Clone>(site: &Site<'_, '_, C>, depth: usize) -> Option<f64> {
     let (mut machine, mut cell) = (site.machine.clone(), site.cell.clone());
     let mut watch = Watch(site.trail.clone());
-    let actions = watch.0.actions();
-    let mark = Mark::at(actions[actions.len() - depth].steps);
+    for change in &site.changes {
+        back(&mut machine, &mut cell, &mut watch.0, depth)?;
+        machine.alter(*change);
+        if is_past(&mut machine, &mut cell, &mut watch, site)? {
+            return Some(cell.now_s() - site.cell.now_s());
+        }
+    }
+    None
+}
+
+fn back<C: Workcell>(
+    machine: &mut Machine<'_>,
+    cell: &mut C,
+    trail: &mut Trail<'_>,
+    depth: usize,
+) -> Option<()> {
+    let actions = trail.actions();
+    let mark = Mark::at(actions[actions.len().checked_sub(depth)?].steps);
     let newest = actions.last().filter(|action| action.is_round_trip(&cell.joints()));
     if let Some(action) = newest {
-        machine.unwind_to(Mark::at(action.steps), &mut cell).ok()?;
+        machine.unwind_to(Mark::at(action.steps), cell).ok()?;
     }
-    match machine.reverse_to(mark, &mut cell, &mut ()) {
-        Stop::AtMark | Stop::OffMark | Stop::AtStart => {}
-        _ => return None,
-    }
-    watch.0.cut(machine.state().steps());
-    machine.alter(site.change);
+    let stop = machine.reverse_to(mark, cell, &mut ());
+    trail.cut(machine.state().steps());
+    matches!(stop, Stop::AtMark | Stop::OffMark | Stop::AtStart).then_some(())
+}
+
+/// Whether going forward leads past the error, or to it again; none if it leads elsewhere.
+fn is_past<C: Workcell>(
+    machine: &mut Machine<'_>,
+    cell: &mut C,
+    watch: &mut Watch<'_>,
+    site: &Site<'_, '_, C>,
+) -> Option<bool> {
     let allowed = machine.executed().saturating_add(STEPS_MAX);
     while watch.0.count() <= site.incident.number + 1 && machine.executed() < allowed {
-        match machine.step(Direction::Forward, &mut cell, &mut watch) {
+        match machine.step(Direction::Forward, cell, watch) {
             Ok(()) | Err(Stop::Raised { .. }) => {}
             Err(Stop::Finished) if machine.state().raised().is_empty() => break,
+            Err(Stop::Due { error, .. }) => {
+                let entry = watch.0.actions().last().map(|action| action.entry);
+                let known = (site.incident.error, Some(site.incident.entry));
+                return ((error, entry) == known).then_some(false);
+            }
             Err(_) => return None,
         }
     }
-    Some(cell.now_s() - site.cell.now_s())
+    Some(true)
 }
 
 struct Watch<'m>(Trail<'m>);

@@ -7,8 +7,8 @@
 //! Reading order: [`ending`], how a run ends; [`mod@drive`], a run that never goes back by itself;
 //! [`trail`], what it may be taken back to; [`strategy`], the ways of recovering; [`incident`], an
 //! error at a place and what has been tried; [`depth`], how far to go back next; [`memory`], what
-//! was learned of that; [`foresight`], who would know better; [`change`], what is done otherwise on the way forward again; [`tell`], what
-//! a person is told; [`mod@recover`], the loop.
+//! was learned of that; [`foresight`], who would know better; [`change`], what is done otherwise on
+//! the way forward again; [`tell`], what a person is told; [`mod@recover`], the loop.
 
 pub mod change;
 pub mod depth;

@@ -1,10 +1,12 @@
 //! What was learned of how far to go back: a posterior by error and place, kept as counts that a
 //! person can read.
 //!
-//! Each incident says something of the depth that is enough there: more than the furthest attempt
-//! that failed, and no more than the one that did not. What the counts leave open is shared out by
-//! expectation maximisation (Turnbull 1976) over a prior that holds near depths likelier. Knows
-//! nothing of what an action is, nor of files on a disk.
+//! An incident has a depth that is enough, which nobody sees, and an attempt that goes back as far
+//! helps with a chance that is the place's: a spiral search may need several. The counts say how
+//! far each attempt of an incident went back and whether the last was enough; what they leave open
+//! of the depths is shared out by expectation maximisation (Turnbull 1976) over a prior that holds
+//! near depths likelier, for each of a few chances, which are then weighed by how well they explain
+//! the counts. Knows nothing of what an action is, nor of files on a disk.
 
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
@@ -12,12 +14,15 @@ use std::fmt;
 
 /// The greatest depth that is told apart; what is deeper counts as this.
 pub const DEPTH_MAX: usize = 16;
-/// The chance that going back far enough helps, at each attempt: what is random may fail again.
-const HELPS: f64 = 0.9;
+/// The most attempts of an incident that are remembered, the first ones.
+pub const ATTEMPTS_MAX: usize = 16;
+/// What the chance of an attempt that goes back far enough may be, and the weight of each before
+/// anything is known.
+const HELPS: [(f64, f64); 5] = [(0.15, 1.0), (0.3, 1.0), (0.5, 2.0), (0.7, 3.0), (0.95, 3.0)];
 /// How many attempts are thought ahead.
 const AHEAD: usize = 3;
-/// The weight in incidents of what is believed before anything is known, by depth: each depth half
-/// of the one before, and as much as the first that going back does not help at all.
+/// The weight in incidents of what is believed of the first depth before anything is known; of each
+/// further depth half of the one before.
 const PRIOR_FIRST: f64 = 1.0;
 /// What is believed of going back never helping, before anything is known.
 const PRIOR_NEVER: f64 = 0.2;
@@ -28,18 +33,28 @@ const VERSION: u32 = 1;
 /// The most kinds of incident that a text may hold.
 const KINDS_MAX: usize = 100_000;
 
-/// What became of incidents of a kind: failed at this depth, and enough at that.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
+/// What became of incidents of a kind.
+#[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
 struct Kind {
-    /// The furthest attempt that failed; 0 if none did.
-    failed: usize,
-    /// The attempt that did not fail; none if it was given up.
-    enough: Option<usize>,
+    /// How far each attempt went back.
+    depths: Vec<usize>,
+    /// Whether the last was enough.
+    is_enough: bool,
 }
 
 /// What is known of an error at a place.
-#[derive(Clone, Debug, Default, PartialEq)]
-struct Known(BTreeMap<Kind, u64>);
+#[derive(Clone, Debug, Default)]
+struct Known {
+    times: BTreeMap<Kind, u64>,
+    /// What follows from it, once somebody has asked.
+    belief: Option<Belief>,
+}
+
+impl PartialEq for Known {
+    fn eq(&self, other: &Self) -> bool {
+        self.times == other.times
+    }
+}
 
 /// What was learned of how far to go back.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -73,139 +88,168 @@ impl Memory {
     /// How many incidents of an error at a place are known.
     #[must_use]
     pub fn known(&self, error: &str, place: &str) -> u64 {
-        self.of(error, place).map_or(0, |known| known.0.values().sum())
-    }
-
-    fn of(&self, error: &str, place: &str) -> Option<&Known> {
-        self.places.get(&(error.to_owned(), place.to_owned()))
+        let known = self.places.get(&(error.to_owned(), place.to_owned()));
+        known.map_or(0, |known| known.times.values().sum())
     }
 
     /// Remember what became of an incident: how far each attempt went back, and whether the last
-    /// was enough.
-    pub fn learn(&mut self, error: &str, place: &str, depths: &[usize], was_enough: bool) {
-        let (failed, enough) = match (depths, was_enough) {
-            ([before @ .., last], true) => (before, Some(*last)),
-            (all, _) => (all, None),
-        };
-        let failed = failed.iter().copied().max().unwrap_or(0).min(DEPTH_MAX);
-        let enough = enough.map(|depth| depth.clamp(1, DEPTH_MAX));
-        if failed == 0 && enough.is_none() {
+    /// was enough. Without an attempt there is nothing to remember.
+    pub fn learn(&mut self, error: &str, place: &str, depths: &[usize], is_enough: bool) {
+        if depths.is_empty() {
             return;
         }
+        let left_out = depths.len() > ATTEMPTS_MAX;
+        let kept = depths.iter().take(ATTEMPTS_MAX);
+        let depths = kept.map(|&depth| depth.clamp(1, DEPTH_MAX)).collect();
+        let kind = Kind { depths, is_enough: is_enough && !left_out };
         let known = self.places.entry((error.to_owned(), place.to_owned())).or_default();
-        *known.0.entry(Kind { failed, enough }).or_default() += 1;
+        known.belief = None;
+        let times = known.times.entry(kind).or_default();
+        *times = times.saturating_add(1);
     }
 
     /// How far to go back next from an error at a place, after attempts of these depths have
     /// failed. There is a cost for each depth that is possible.
     #[must_use]
-    pub fn choose(&self, error: &str, place: &str, tried: &[usize], costs: Costs<'_>) -> Choice {
-        let known = self.of(error, place);
-        let mut belief = Belief::of(known);
+    pub fn choose(
+        &mut self,
+        error: &str,
+        place: &str,
+        tried: &[usize],
+        costs: Costs<'_>,
+    ) -> Choice {
+        let known = self.known(error, place);
+        let mut belief = match self.places.get_mut(&(error.to_owned(), place.to_owned())) {
+            Some(known) => known.belief.get_or_insert_with(|| Belief::of(&known.times)).clone(),
+            None => Belief::of(&BTreeMap::new()),
+        };
         for &depth in tried {
-            belief = belief.after_failure(depth);
+            belief.fail(depth);
         }
-        let from = tried.iter().copied().max().unwrap_or(1).clamp(1, DEPTH_MAX);
-        let (expected_s, actions) = belief.best(from, costs, AHEAD);
-        Choice {
-            actions,
-            chance: actions.map_or(0.0, |depth| belief.chance(depth)),
-            expected_s,
-            known: self.known(error, place),
-        }
+        let (expected_s, actions) = belief.best(costs, AHEAD);
+        let chance = actions.map_or(0.0, |depth| belief.chance(depth));
+        Choice { actions, chance, expected_s, known }
     }
 }
 
-/// How likely each depth is the least that is enough, from 1; the last place: none is.
+/// How likely each depth is the least that is enough, from 1; in the last place, that none is.
+type Shares = [f64; DEPTH_MAX + 1];
+
+/// The same with each chance that an attempt helps; all adds up to 1.
 #[derive(Clone, Debug)]
-struct Belief([f64; DEPTH_MAX + 1]);
+struct Belief([Shares; HELPS.len()]);
+
+fn prior() -> Shares {
+    let mut weights = [PRIOR_FIRST; DEPTH_MAX + 1];
+    for depth in 1..DEPTH_MAX {
+        weights[depth] = 0.5 * weights[depth - 1];
+    }
+    weights[DEPTH_MAX] = PRIOR_NEVER;
+    weights
+}
+
+fn normal(mut shares: Shares) -> Shares {
+    let whole: f64 = shares.iter().sum();
+    shares.iter_mut().for_each(|share| *share /= whole);
+    shares
+}
+
+/// How likely it is that an incident came to this, by the depth that is enough.
+fn likelihood(kind: &Kind, helps: f64) -> Shares {
+    std::array::from_fn(|index| {
+        let enough = index + 1;
+        let goes_so_far = |depth: &usize| index < DEPTH_MAX && *depth >= enough;
+        let failed = &kind.depths[..kind.depths.len() - usize::from(kind.is_enough)];
+        let in_vain = failed.iter().filter(|depth| goes_so_far(depth)).count();
+        let last = match (kind.is_enough, kind.depths.last()) {
+            (true, Some(last)) => f64::from(u8::from(goes_so_far(last))) * helps,
+            _ => 1.0,
+        };
+        libm::pow(1.0 - helps, in_vain as f64) * last
+    })
+}
 
 impl Belief {
-    fn prior() -> Self {
-        let mut weights = [PRIOR_FIRST; DEPTH_MAX + 1];
-        for depth in 1..DEPTH_MAX {
-            weights[depth] = 0.5 * weights[depth - 1];
-        }
-        weights[DEPTH_MAX] = PRIOR_NEVER;
-        Self(weights)
+    fn of(times: &BTreeMap<Kind, u64>) -> Self {
+        let explained = HELPS.map(|(helps, weight)| {
+            let (shares, likely) = shares(times, helps);
+            (shares, libm::log(weight) + likely)
+        });
+        let best = explained.iter().map(|(_, likely)| *likely).fold(f64::NEG_INFINITY, f64::max);
+        let mut belief = Self(explained.map(|(shares, likely)| {
+            let weight = libm::exp(likely - best);
+            shares.map(|share| weight * share)
+        }));
+        belief.normalise();
+        belief
     }
 
-    fn of(known: Option<&Known>) -> Self {
-        let prior = Self::prior();
-        let Some(known) = known else { return prior.normal() };
-        let mut belief = prior.clone();
-        for _ in 0..ROUNDS {
-            let mut weights = prior.0;
-            for (kind, times) in &known.0 {
-                let share = belief.within(*kind);
-                let whole: f64 = share.iter().sum();
-                for (weight, part) in weights.iter_mut().zip(share) {
-                    *weight += *times as f64 * part / whole;
-                }
-            }
-            belief = Self(weights);
-        }
-        belief.normal()
-    }
-
-    /// What of it agrees with what became of an incident; some of it always does.
-    fn within(&self, kind: Kind) -> [f64; DEPTH_MAX + 1] {
-        // Enough at a depth that had failed before: chance had a part in it.
-        let low = kind.enough.map_or(kind.failed, |enough| kind.failed.min(enough - 1));
-        let high = kind.enough.unwrap_or(DEPTH_MAX + 1);
-        let mut share = self.0;
-        for (index, weight) in share.iter_mut().enumerate() {
-            let depth = index + 1;
-            if depth <= low || depth > high {
-                *weight = 0.0;
-            }
-        }
-        share
-    }
-
-    fn normal(mut self) -> Self {
-        let whole: f64 = self.0.iter().sum();
-        self.0.iter_mut().for_each(|weight| *weight /= whole);
-        self
+    fn normalise(&mut self) {
+        let whole: f64 = self.0.iter().flatten().sum();
+        self.0.iter_mut().flatten().for_each(|share| *share /= whole);
     }
 
     /// The chance that an attempt of a depth gets past the error.
     fn chance(&self, depth: usize) -> f64 {
-        HELPS * self.0[..depth.min(DEPTH_MAX)].iter().sum::<f64>()
+        let far = |shares: &Shares| shares[..depth.min(DEPTH_MAX)].iter().sum::<f64>();
+        self.0.iter().zip(HELPS).map(|(shares, (helps, _))| helps * far(shares)).sum()
     }
 
-    /// What is believed after an attempt of a depth has failed.
-    fn after_failure(&self, depth: usize) -> Self {
-        let mut weights = self.0;
-        for weight in &mut weights[..depth.min(DEPTH_MAX)] {
-            *weight *= 1.0 - HELPS;
+    /// An attempt of a depth has failed.
+    fn fail(&mut self, depth: usize) {
+        for (shares, (helps, _)) in self.0.iter_mut().zip(HELPS) {
+            shares[..depth.min(DEPTH_MAX)].iter_mut().for_each(|share| *share *= 1.0 - helps);
         }
-        Self(weights).normal()
+        self.normalise();
     }
 
     /// The least expected time to be past the error, and the depth to try first for it; none where
-    /// giving up costs less. No depth below `from` is tried.
-    fn best(&self, from: usize, costs: Costs<'_>, ahead: usize) -> (f64, Option<usize>) {
+    /// giving up costs less.
+    fn best(&self, costs: Costs<'_>, ahead: usize) -> (f64, Option<usize>) {
         let mut best = (costs.give_up_s, None);
         if ahead == 0 {
             return best;
         }
-        let depths = costs.by_depth_s.len().min(DEPTH_MAX);
-        // Where no depth is left to go further, the furthest may be tried again.
-        for depth in from.min(depths.max(1))..=depths {
-            let cost_s = costs.by_depth_s[depth - 1];
-            let fails = 1.0 - self.chance(depth);
+        for (index, &cost_s) in costs.by_depth_s.iter().enumerate().take(DEPTH_MAX) {
+            // What is deeper takes longer.
             if cost_s >= best.0 {
-                continue;
+                break;
             }
-            let (then_s, _) = self.after_failure(depth).best(depth, costs, ahead - 1);
-            let expected_s = cost_s + fails * then_s;
+            let depth = index + 1;
+            let mut after = self.clone();
+            after.fail(depth);
+            let (then_s, _) = after.best(costs, ahead - 1);
+            let expected_s = cost_s + (1.0 - self.chance(depth)) * then_s;
             if expected_s < best.0 {
                 best = (expected_s, Some(depth));
             }
         }
         best
     }
+}
+
+/// What the counts say of the depths if an attempt that goes back far enough helps with a chance,
+/// and the logarithm of how likely the counts then are.
+fn shares(times: &BTreeMap<Kind, u64>, helps: f64) -> (Shares, f64) {
+    let kinds: Vec<(Shares, f64)> =
+        times.iter().map(|(kind, times)| (likelihood(kind, helps), *times as f64)).collect();
+    let mut present = normal(prior());
+    for _ in 0..ROUNDS {
+        let mut weights = prior();
+        for (likely, times) in &kinds {
+            let whole = product(&present, likely);
+            for ((weight, share), likely) in weights.iter_mut().zip(present).zip(likely) {
+                *weight += times * share * likely / whole;
+            }
+        }
+        present = normal(weights);
+    }
+    let likely = kinds.iter().map(|(likely, times)| times * libm::log(product(&present, likely)));
+    (present, likely.sum())
+}
+
+fn product(shares: &Shares, likely: &Shares) -> f64 {
+    shares.iter().zip(likely).map(|(share, likely)| share * likely).sum()
 }
 
 /// The text of a memory.
@@ -229,9 +273,8 @@ struct PlaceText {
 #[derive(Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 struct KindText {
-    failed_at: usize,
-    #[serde(skip_serializing_if = "Option::is_none")]
-    enough_at: Option<usize>,
+    depths: Vec<usize>,
+    enough: bool,
     times: u64,
 }
 
@@ -278,9 +321,9 @@ impl fmt::Display for MemoryError {
 impl std::error::Error for MemoryError {}
 
 const HEAD: &str = "\
-# What was learned of how far to go back, by error and place. `failed_at` is the furthest that was
-# tried in vain, in actions (0: nothing was), `enough_at` how far was enough (absent: it was given
-# up). Take out a [[place]], or the whole file, to forget it.
+# What was learned of how far to go back, by error and place: how far each attempt of an incident
+# went back, in actions, whether the last was enough, and how often that was so. Take out a
+# [[place]], or the whole file, to forget it.
 ";
 
 impl Memory {
@@ -288,14 +331,14 @@ impl Memory {
     #[must_use]
     pub fn to_text(&self) -> String {
         let kind = |(kind, times): (&Kind, &u64)| KindText {
-            failed_at: kind.failed,
-            enough_at: kind.enough,
+            depths: kind.depths.clone(),
+            enough: kind.is_enough,
             times: *times,
         };
         let place = |((error, at), known): (&(String, String), &Known)| PlaceText {
             error: error.clone(),
             at: at.clone(),
-            incident: known.0.iter().map(kind).collect(),
+            incident: known.times.iter().map(kind).collect(),
         };
         let text = Text { version: VERSION, place: self.places.iter().map(place).collect() };
         format!("{HEAD}{}", toml::to_string(&text).unwrap_or_default())
@@ -323,8 +366,8 @@ impl Memory {
                     place: at.clone(),
                     what,
                 })?;
-                let key = Kind { failed: kind.failed_at, enough: kind.enough_at };
-                let times = known.0.entry(key).or_default();
+                let key = Kind { depths: kind.depths, is_enough: kind.enough };
+                let times = known.times.entry(key).or_default();
                 *times = times.saturating_add(kind.times);
             }
             memory.places.insert((error, at), known);
@@ -336,8 +379,9 @@ impl Memory {
     pub fn merge(&mut self, other: &Self) {
         for (place, known) in &other.places {
             let own = self.places.entry(place.clone()).or_default();
-            for (kind, times) in &known.0 {
-                let sum = own.0.entry(*kind).or_default();
+            own.belief = None;
+            for (kind, times) in &known.times {
+                let sum = own.times.entry(kind.clone()).or_default();
                 *sum = sum.saturating_add(*times);
             }
         }
@@ -345,16 +389,18 @@ impl Memory {
 }
 
 fn check(kind: &KindText) -> Result<(), &'static str> {
-    match kind {
-        KindText { failed_at: 0, enough_at: None, .. } => Err("nothing was tried"),
-        KindText { enough_at: Some(0), .. } => Err("going back by 0 actions was enough"),
-        KindText { failed_at, enough_at, .. }
-            if (*failed_at).max(enough_at.unwrap_or(0)) > DEPTH_MAX =>
-        {
-            Err("that is further than is told apart")
-        }
-        KindText { times, .. } if *times > 1 << 40 => Err("that is more often than can be"),
-        _ => Ok(()),
+    if kind.depths.is_empty() {
+        Err("nothing was tried")
+    } else if kind.depths.len() > ATTEMPTS_MAX {
+        Err("that is more attempts than are remembered")
+    } else if kind.depths.contains(&0) {
+        Err("it went back by 0 actions")
+    } else if kind.depths.iter().any(|&depth| depth > DEPTH_MAX) {
+        Err("that is further than is told apart")
+    } else if kind.times > 1 << 40 {
+        Err("that is more often than can be")
+    } else {
+        Ok(())
     }
 }
 
@@ -364,22 +410,22 @@ mod tests {
 
     const COSTS_S: [f64; 6] = [2.0, 4.0, 8.0, 12.0, 20.0, 30.0];
 
-    fn choose(memory: &Memory, tried: &[usize]) -> Choice {
+    fn choose(memory: &mut Memory, tried: &[usize]) -> Choice {
         let costs = Costs { by_depth_s: &COSTS_S, give_up_s: 300.0 };
         memory.choose("jam", "here", tried, costs)
     }
 
     #[test]
     fn who_knows_nothing_begins_near_goes_further_and_gives_up_only_at_the_end() {
-        let memory = Memory::default();
+        let mut memory = Memory::default();
         let mut tried = Vec::new();
-        while let Some(actions) = choose(&memory, &tried).actions {
+        while let Some(actions) = choose(&mut memory, &tried).actions {
             tried.push(actions);
-            assert!(tried.len() < 20, "{tried:?}");
+            assert!(tried.len() < 40, "{tried:?}");
         }
         assert!(tried[0] <= 2, "{tried:?}");
-        assert!(tried.is_sorted(), "{tried:?}");
-        assert_eq!(tried.last(), Some(&COSTS_S.len()), "{tried:?}");
+        assert_eq!(tried.iter().max(), Some(&COSTS_S.len()), "{tried:?}");
+        assert!(tried.len() >= 4, "{tried:?}");
     }
 
     #[test]
@@ -388,7 +434,7 @@ mod tests {
         for _ in 0..30 {
             memory.learn("jam", "here", &[1, 3, 4], true);
         }
-        assert_eq!(choose(&memory, &[]).actions, Some(4));
+        assert_eq!(choose(&mut memory, &[]).actions, Some(4));
         // Elsewhere, and for another error, nothing is known.
         let costs = Costs { by_depth_s: &COSTS_S, give_up_s: 300.0 };
         assert!(memory.choose("jam", "there", &[], costs).actions.unwrap() <= 2);
@@ -411,11 +457,26 @@ mod tests {
             memory.learn("jam", "here", &[1], true);
             memory.learn("jam", "here", &[1, 2, 4, 5], true);
         }
-        let first = choose(&memory, &[]);
+        let first = choose(&mut memory, &[]);
         assert_eq!(first.actions, Some(1));
         assert!((0.3..0.6).contains(&first.chance), "{}", first.chance);
-        let second = choose(&memory, &[1]);
-        assert_eq!(second.actions, Some(5), "{second:?}");
+        assert_eq!(choose(&mut memory, &[1]).actions, Some(5));
+    }
+
+    #[test]
+    fn where_each_attempt_helps_seldom_but_near_ones_as_much_as_far_it_stays_near() {
+        // A search that takes its time: one attempt in three helps, however far back.
+        let mut memory = Memory::default();
+        for round in 0..60 {
+            let depths: Vec<usize> = (0..1 + round % 5).map(|index| 1 + index % 3).collect();
+            memory.learn("jam", "here", &depths, true);
+        }
+        let mut tried = Vec::new();
+        for _ in 0..6 {
+            let choice = choose(&mut memory, &tried);
+            tried.push(choice.actions.unwrap());
+        }
+        assert!(tried.iter().all(|&depth| depth <= 3), "{tried:?}");
     }
 
     #[test]
@@ -435,13 +496,16 @@ mod tests {
             )
         };
         let what = |incident: &str| Memory::from_text(&text(incident)).unwrap_err().to_string();
-        assert!(what("{ failed_at = 0, times = 1 }").contains("nothing was tried"));
-        assert!(what("{ failed_at = 1, enough_at = 0, times = 1 }").contains("0 actions"));
-        assert!(what("{ failed_at = 99, times = 1 }").contains("further"));
-        assert!(what("{ failed_at = -1, times = 1 }").contains("no memory"));
+        let of =
+            |depths: &str| what(&format!("{{ depths = [{depths}], enough = true, times = 1 }}"));
+        assert!(of("").contains("nothing was tried"));
+        assert!(of("1, 0").contains("0 actions"));
+        assert!(of("99").contains("further"));
+        assert!(of("-1").contains("no memory"));
+        assert!(of(&"1,".repeat(17)).contains("more attempts"));
         let other = Memory::from_text("version = 7\n").unwrap_err();
         assert_eq!(other, MemoryError::Version { found: 7 });
-        let torn = &Memory::from_text(&text("{ failed_at = 1,")[..60]);
+        let torn = &Memory::from_text(&text("{ depths = [1],")[..60]);
         assert!(matches!(torn, Err(MemoryError::Malformed { .. })));
     }
 

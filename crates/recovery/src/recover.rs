@@ -8,7 +8,7 @@ use crate::incident::{Attempt, Incident, Outcome};
 use crate::memory::Memory;
 use crate::strategy::{Bounds, Strategy};
 use crate::tell::{Operator, Step, Teller, Why};
-use crate::trail::Trail;
+use crate::trail::{Action, Trail};
 use obverse_bytecode::{
     Depth, ErrorDeclaration, FaultName, Module, Recovery as Declared, Reversal,
 };
@@ -54,14 +54,17 @@ pub struct Site<'s, 'p, C> {
     pub trail: &'s Trail<'p>,
     /// The error and what has been tried.
     pub incident: &'s Incident,
-    /// What will be done otherwise on the way forward again.
-    pub change: Option<Alteration>,
+    /// What will be done otherwise on the way forward again, by attempt that is left.
+    pub changes: Vec<Option<Alteration>>,
 }
 
-/// Who knows what will come of going back.
+/// Who sees the world as it is, and knows what will come of going back.
 pub trait Foresight<C> {
     /// How many actions it is best to go back; none if it will not help.
     fn depth(&mut self, site: &Site<'_, '_, C>) -> Option<usize>;
+
+    /// An error is due for the first time, by whatever strategy it will be met.
+    fn on_error(&mut self, _: &Incident, _: &C) {}
 }
 
 /// Run a program forward until it ends, recovering from its errors.
@@ -186,7 +189,7 @@ impl<'p, C: Workcell> Run<'_, 'p, '_, C> {
         let raised = error.filter(|error| {
             let step = Step::Fault { fault: &fault, pc, error: *error };
             self.teller.on_step(&step, self.cell);
-            self.may_move(&fault) && self.machine.raise(*error)
+            self.may_move(&fault) && self.machine.raise(*error, self.cell)
         });
         if raised.is_some() { None } else { Some(Ending::Fault { fault, pc, direction }) }
     }
@@ -236,6 +239,11 @@ impl<'p, C: Workcell> Run<'_, 'p, '_, C> {
             attempts: Vec::new(),
             outcome: None,
         });
+        if let (Some(foresight), Some(incident)) =
+            (self.recovery.foresight.as_mut(), self.open.last())
+        {
+            foresight.on_error(incident, self.cell);
+        }
         self.open.len() - 1
     }
 
@@ -283,13 +291,16 @@ impl<'p, C: Workcell> Run<'_, 'p, '_, C> {
     }
 
     fn foresee(&mut self, index: usize) -> Result<Plan, GiveUp> {
-        let change = self.change(&self.open[index]);
+        let incident = &self.open[index];
+        let made = incident.attempts.len() as u32;
+        let attempts = made + 1..=self.bounds(incident).attempts;
+        let changes = attempts.map(|attempt| self.change(incident, attempt)).collect();
         let site = Site {
             machine: self.machine,
             cell: &*self.cell,
             trail: &self.trail,
-            incident: &self.open[index],
-            change,
+            incident,
+            changes,
         };
         let foresight = self.recovery.foresight.as_mut().ok_or(GiveUp::Strategy)?;
         let actions = foresight.depth(&site).ok_or(GiveUp::WouldNotHelp)?;
@@ -314,11 +325,7 @@ impl<'p, C: Workcell> Run<'_, 'p, '_, C> {
     }
 
     fn check_bounds(&self, incident: &Incident) -> Result<(), GiveUp> {
-        let said = self.declared(incident).bounds;
-        let own = self.recovery.bounds;
-        let attempts = said.attempts.unwrap_or(own.attempts);
-        let time_s = said.time_s.unwrap_or(own.time_s);
-        let distance_m = said.distance_m.unwrap_or(own.distance_m);
+        let Bounds { attempts, time_s, distance_m } = self.bounds(incident);
         if incident.attempts.len() as u64 >= u64::from(attempts) {
             Err(GiveUp::Attempts(attempts))
         } else if self.cell.now_s() - incident.began_s >= time_s {
@@ -330,14 +337,24 @@ impl<'p, C: Workcell> Run<'_, 'p, '_, C> {
         }
     }
 
+    /// What may be spent on an incident.
+    fn bounds(&self, incident: &Incident) -> Bounds {
+        let said = self.declared(incident).bounds;
+        let own = self.recovery.bounds;
+        Bounds {
+            attempts: said.attempts.unwrap_or(own.attempts),
+            time_s: said.time_s.unwrap_or(own.time_s),
+            distance_m: said.distance_m.unwrap_or(own.distance_m),
+        }
+    }
+
     fn declared(&self, incident: &Incident) -> &'p ErrorDeclaration {
         &self.module().errors[incident.error.index()]
     }
 
-    /// What the attempt that is about to be made does otherwise.
-    fn change(&self, incident: &Incident) -> Option<Alteration> {
-        let attempt = incident.attempts.len() as u32 + 1;
-        let motion = self.trail.actions().last().and_then(|action| action.motion());
+    /// What an attempt, counted from 1, does otherwise.
+    fn change(&self, incident: &Incident, attempt: u32) -> Option<Alteration> {
+        let motion = self.trail.actions().last().and_then(Action::motion);
         let policy = reversal(self.declared(incident))?;
         let reverses = !matches!(
             self.recovery.strategy,
@@ -348,7 +365,8 @@ impl<'p, C: Workcell> Run<'_, 'p, '_, C> {
     }
 
     fn carry_out(&mut self, index: usize, plan: Plan) -> Result<(), GiveUp> {
-        let change = self.change(&self.open[index]);
+        let incident = &self.open[index];
+        let change = self.change(incident, incident.attempts.len() as u32 + 1);
         let began_s = self.cell.now_s();
         let actions = if let Plan::Back { actions, .. } = plan { actions } else { 0 };
         match plan {
@@ -398,8 +416,8 @@ impl<'p, C: Workcell> Run<'_, 'p, '_, C> {
         }
     }
 
-    /// An action that ended where it began is taken back in the program alone: going there again and
-    /// back would press anew on what had stopped it, for nothing.
+    /// An action that ended where it began is taken back in the program alone: going there again
+    /// and back would press anew on what had stopped it, for nothing.
     fn pass_round_trip(&mut self, index: usize) -> Result<(), GiveUp> {
         let newest = self.trail.actions().last();
         let Some(action) = newest.filter(|it| it.is_round_trip(&self.cell.joints())) else {

@@ -197,7 +197,7 @@ impl<'m> Trail<'m> {
             Instr::Checkpoint { checkpoint } => {
                 self.posts.push((began, Post::Checkpoint(checkpoint)));
             }
-            Instr::Return {} => return self.end_call(event),
+            Instr::Return {} => self.end_call(event),
             Instr::Call { function, .. } if self.is_transparent(function) => {
                 let depth = event.frames.saturating_sub(1);
                 let post = Post::Sequence { depth, branches: event.branches.clone() };

@@ -51,10 +51,26 @@ impl Line {
         tcp: &Pose,
         ranges: &Ranges,
     ) -> Result<Self, Fault> {
+        let shift_m = goal.translation_m - start.translation_m;
+        Self::turning(from, start, (shift_m, turn_between(&start, goal)), tcp, ranges)
+    }
+
+    /// The line along a shift, in the base frame, and a turn meanwhile, axis times angle in the
+    /// frame of the start: a helix if they have one axis. Whole turns count.
+    ///
+    /// # Errors
+    /// As of [`follow`](Self::follow).
+    pub(crate) fn turning(
+        from: &JointConfiguration,
+        start: Pose,
+        (shift_m, turn_rad): (Vector3<f64>, Vector3<f64>),
+        tcp: &Pose,
+        ranges: &Ranges,
+    ) -> Result<Self, Fault> {
         let mut line = Self {
             start,
-            shift_m: goal.translation_m - start.translation_m,
-            turn_rad: start.inverse().compose(goal).rotation_vector_rad().into(),
+            shift_m,
+            turn_rad,
             mount_in_tcp: tcp.inverse(),
             branch: Branch::of(from),
             knots: Vec::with_capacity(32),
@@ -72,6 +88,11 @@ impl Line {
     /// The whole turn of the tool, in radians.
     pub(crate) fn angle_rad(&self) -> f64 {
         self.turn_rad.norm()
+    }
+
+    /// The whole turn of the tool about an axis of the base frame, in radians.
+    pub(crate) fn turn_about_rad(&self, axis: &Vector3<f64>) -> f64 {
+        (self.start.rotation * self.turn_rad).dot(axis)
     }
 
     /// Configurations along the line, the first at its start and the last at its end.
@@ -149,6 +170,12 @@ impl Line {
         };
         found.ok_or_else(|| Fault::OutOfReach { at_m: self.tcp_at(fraction).translation_m.into() })
     }
+}
+
+/// The turn from one pose to another by the shorter way, axis times angle in the frame of the
+/// first.
+pub(crate) fn turn_between(from: &Pose, to: &Pose) -> Vector3<f64> {
+    from.inverse().compose(to).rotation_vector_rad().into()
 }
 
 /// The configuration with the least sum of squared differences to a reference.

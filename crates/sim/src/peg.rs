@@ -32,6 +32,8 @@
 //! - *face*: the end lands beside the hole; what the arm goes on is pressed: `F = K p`.
 //! - *chamfer*: the rim slides down the cone and the peg is pushed aside by `d`. From the balance
 //!   on a slope of 45 degrees, `Fx = Kx d` and `Fz = Fx (1 + m) / (1 - m)`.
+//! - *throat*: while a tilted rim passes it, the higher side hangs on the throat by two points that
+//!   move apart, and the peg goes aside faster than down. The steeper that is, the more force.
 //! - *one point*: the rim or the throat pushes the peg aside by `d`: `Fz = m Kx d`.
 //! - *two points*: the tilt exceeds what fits at this depth by `a`, and is righted by a couple
 //!   `Kt a = f1 h` of throat and wall, `f1 - f2 = Fx` and `Fz = m (f1 + f2)`. The moments of the
@@ -52,6 +54,11 @@ use nalgebra::{Vector2, Vector3};
 const ROUNDING_MM: f64 = 1e-7;
 /// How often the peg is pushed off what it overlaps before the rest is left.
 const PUSHES_MAX: u32 = 32;
+/// A step down, in search of how fast the peg is pushed aside.
+const SLOPE_STEP_MM: f64 = 1e-3;
+/// No edge is so sharp that it takes more force than what these two leave.
+const EDGE_COS_MIN: f64 = 0.1;
+const EDGE_BALANCE_MIN: f64 = 0.1;
 /// Steps of Newton's method for the tilt that fits.
 const NEWTON_STEPS: u32 = 6;
 
@@ -252,11 +259,36 @@ impl Fit {
         }
         let (pushed, stage) = self.pushed_aside(peg, below_throat);
         let lateral_n = pushed * self.lateral_n_per_mm;
+        let straddles = below_throat > 0.0 && below_throat < self.peg_radius_mm * peg.sin;
         let slope = match stage {
+            Stage::Chamfer | Stage::OnePoint if straddles => {
+                self.slope_at_throat(peg, below_throat, &pushed)
+            }
             Stage::Chamfer => (1.0 + self.friction) / (1.0 - self.friction),
             _ => self.friction,
         };
         Contact { stage, axial_n: slope * lateral_n.norm(), lateral_n }
+    }
+
+    /// The force along the hole for one from the side, while one side of the rim has passed the
+    /// throat and the other has not. There the rim touches the throat on both sides of the push,
+    /// and as it goes down the two points move apart: aside by `s` for each step down, which may be
+    /// much more than the one of the chamfer. From the balance along and across, with the normals
+    /// at an angle `a` to the push: `(s + m q) / (1 - m s q)`, where `q` is one for `a = 0`.
+    fn slope_at_throat(&self, peg: &Tilted, below_throat: f64, pushed: &Vector2<f64>) -> f64 {
+        let length = pushed.norm();
+        if length <= ROUNDING_MM {
+            return self.friction;
+        }
+        let aside = pushed / length;
+        let below =
+            Tilted { rim_z: peg.rim_z + SLOPE_STEP_MM, lowest: peg.lowest + SLOPE_STEP_MM, ..*peg };
+        let (further, _) = self.pushed_aside(&below, below_throat + SLOPE_STEP_MM);
+        let s = ((further.dot(&aside) - length) / SLOPE_STEP_MM).max(0.0);
+        let ((_, outwards), _) = self.at_rim(peg, peg.rim + pushed);
+        let cos = (-outwards.dot(&aside)).clamp(EDGE_COS_MIN, 1.0);
+        let q = ((1.0 + s * s * cos * cos) / (1.0 + s * s)).sqrt() / cos;
+        (s + self.friction * q) / (1.0 - self.friction * s * q).max(EDGE_BALANCE_MIN)
     }
 
     fn stuck(&self, pressed_mm: f64) -> Contact {
@@ -407,7 +439,22 @@ impl Fit {
         let middle = Vector2::new(rim.x - below_throat * peg.sin / peg.cos, rim.y);
         let along = self.peg_radius_mm / peg.cos;
         let section = Ellipse { middle, along, across: self.peg_radius_mm };
-        section.beyond(self.hole_radius_mm)
+        let excess = section.beyond(self.hole_radius_mm);
+        let dip = self.peg_radius_mm * peg.sin;
+        if excess.0 <= ROUNDING_MM || below_throat >= dip {
+            return excess;
+        }
+        // Where the rim is still above the throat, the throat has no side of the peg to touch: what
+        // counts is the rest of the section, at its far end or where the rim passes the throat.
+        let cos = below_throat / dip;
+        let sin = (1.0 - cos * cos).sqrt();
+        let farthest = section.farthest();
+        let far = if farthest.cos <= cos { farthest } else { Turn { cos: -1.0, sin: 0.0 } };
+        let ends = [Turn { cos, sin }, Turn { cos, sin: -sin }];
+        ends.into_iter().fold(section.excess_at(far, self.hole_radius_mm), |worst, end| {
+            let excess = section.excess_at(end, self.hole_radius_mm);
+            if excess.0 > worst.0 { excess } else { worst }
+        })
     }
 }
 

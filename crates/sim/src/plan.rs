@@ -5,12 +5,13 @@
 //! with the code that carries out real motions, so that question and act cannot differ. Knows
 //! nothing of programs.
 
-use crate::cell::{Cell, OffsetSpec};
+use crate::cell::{Cell, ChanceSpec, OffsetSpec};
 use crate::robot::LINK_NAMES;
 use crate::route::Route;
 use crate::sim::Sim;
 use obverse_geometry::JointConfiguration;
 use obverse_workcell::{Arm, DigitalIo, Fault, Gripper, Motion, MotionReport, Safety};
+use std::sync::Arc;
 
 /// How often one motion is looked at for contact: enough for a quarter of a metre along something
 /// that it touches all the way.
@@ -44,6 +45,16 @@ impl Cell {
         cell.items.iter_mut().for_each(|item| item.offset = OffsetSpec::default());
         cell.fixtures.iter_mut().for_each(|fixture| fixture.offset = OffsetSpec::default());
         cell.force_sensor.noise_n = 0.0;
+        cell.force_sensor.bias_uniform_n = 0.0;
+        cell.force_sensor.bias_normal_n = 0.0;
+        for feeder in &mut cell.feeders {
+            (feeder.empty, feeder.askew) = (0.0, 0.0);
+        }
+        if let Some(gripper) = &mut cell.gripper {
+            // What centres an item does so without chance.
+            (gripper.grasp_offset, gripper.slip) = (OffsetSpec::default(), None);
+        }
+        cell.chance = ChanceSpec::default();
         cell
     }
 }
@@ -52,7 +63,10 @@ impl Plan {
     /// A cell at its start, without chance.
     #[must_use]
     pub fn new(cell: &Cell) -> Self {
-        let mut sim = Sim::new(&cell.nominal(), 0);
+        let mut cell = cell.nominal();
+        // In thought no time passes: what was asked for is there.
+        cell.feeders.iter_mut().for_each(|feeder| feeder.delay_s = 0.0);
+        let mut sim = Sim::shared(Arc::new(cell), 0);
         sim.looks_max = Some(LOOKS_MAX);
         Self { sim }
     }
@@ -107,6 +121,9 @@ impl Plan {
         let mut placed = self.clone();
         placed.sim.joints = joints;
         placed.sim.force_n = 0.0;
+        if let Some(item) = placed.sim.items.held() {
+            placed.sim.seatings[item] = None;
+        }
         placed
     }
 
@@ -145,5 +162,6 @@ impl Plan {
     /// What the gripper holds and how, and where every other item is, as numbers.
     pub fn items_as_numbers(&self, sink: &mut dyn FnMut(u64)) {
         self.sim.items.each_number(sink);
+        self.sim.seatings_as_numbers(sink);
     }
 }

@@ -33,6 +33,12 @@ impl Profile {
         self.duration_s
     }
 
+    /// The greatest speed on the way, in its length a second.
+    #[must_use]
+    pub fn speed(&self) -> f64 {
+        self.speed
+    }
+
     /// The fraction of the way that is behind at a time.
     #[must_use]
     pub fn fraction_at(&self, time_s: f64) -> f64 {

@@ -19,6 +19,52 @@ pub enum Stream {
     FixtureUniform,
     /// Where fixtures truly stand, normal part, by fixture and axis.
     FixtureNormal,
+    /// How far a grasp moves an item, uniform part, by grasp and axis.
+    GraspUniform,
+    /// How far a grasp moves an item, normal part, by grasp and axis.
+    GraspNormal,
+    /// Whether what is held slips, by motion.
+    Slip,
+    /// Whether what slips is lost, by motion.
+    SlipLost,
+    /// How far it slips, uniform part, by motion and axis.
+    SlipUniform,
+    /// How far it slips, normal part, by motion and axis.
+    SlipNormal,
+    /// Whether a feeder has nothing, by feeder and asking.
+    FeederEmpty,
+    /// Whether a part lies askew, by feeder and part.
+    FeederAskew,
+    /// How a part lies that lies askew, uniform part, by feeder, part and axis.
+    AskewUniform,
+    /// How a part lies that lies askew, normal part, by feeder, part and axis.
+    AskewNormal,
+    /// Where a part truly lies that a feeder presents, uniform part, by feeder, part and axis.
+    PartUniform,
+    /// Where a part truly lies that a feeder presents, normal part, by feeder, part and axis.
+    PartNormal,
+    /// Whether an output sticks, by output and change.
+    OutputStick,
+    /// Whether an input sticks, by input and change.
+    InputStick,
+    /// Whether an input flickers, by input and change.
+    InputBounce,
+    /// The level of an input that flickers, by input and time.
+    InputFlicker,
+    /// The bias of the force sensor in this run: uniform part.
+    BiasUniform,
+    /// The bias of the force sensor in this run: normal part.
+    BiasNormal,
+    /// Whether a motion stops short, by motion.
+    StopsShort,
+    /// Whether a protective stop ends a motion, by motion.
+    ProtectiveStop,
+    /// Whether an emergency stop ends a motion, by motion.
+    EmergencyStop,
+    /// Where a motion ends that is ended so, by motion.
+    StopAt,
+    /// How an item comes to lie that falls, by fall.
+    Fall,
 }
 
 /// The golden ratio's fraction, by which SplitMix64 steps.
@@ -60,6 +106,18 @@ pub fn normal(seed: u64, stream: Stream, counter: u64) -> f64 {
     let first = ((both >> 32) as f64 + 0.5) * HALF;
     let second = (both & 0xffff_ffff) as f64 * HALF;
     libm::sqrt(-2.0 * libm::log(first)) * libm::cos(std::f64::consts::TAU * second)
+}
+
+/// Whether something of a probability happens. What never happens costs no draw.
+#[must_use]
+pub fn happens(probability: f64, seed: u64, stream: Stream, counter: u64) -> bool {
+    probability > 0.0 && unit(seed, stream, counter) < probability
+}
+
+/// A counter of which each of up to 65536 things has its own.
+#[must_use]
+pub fn counter_of(thing: usize, count: u64) -> u64 {
+    ((thing as u64) << 48) ^ count
 }
 
 #[cfg(test)]

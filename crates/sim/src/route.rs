@@ -8,6 +8,7 @@ use crate::kinematics::{forward, inverse};
 use crate::limits;
 use crate::line::{Line, nearest};
 use crate::profile::Profile;
+use crate::turned::{self, Turn};
 use nalgebra::{Matrix3, Vector3};
 use obverse_geometry::{Frame, JOINT_COUNT, JointConfiguration, Pose};
 use obverse_workcell::{Fault, Goal, Motion, Path, Speed, ToolId};
@@ -41,7 +42,7 @@ impl Route {
     ) -> Result<Self, Fault> {
         let tool = tool(cell, motion.tool)?;
         check_force(motion.force_limit_n)?;
-        let goal = Target::of(&motion.goal, joints, tool)?;
+        let goal = Target::of(cell, &motion.goal, joints, tool)?;
         if let Target::Joints(to) = &goal {
             limits::check(to, &cell.arm.limits_rad)?;
         }
@@ -54,12 +55,28 @@ impl Route {
                 Ok(Self { from: *joints, to, origin, profile, line: None })
             }
             Path::Linear => {
-                let start = forward(joints).compose(&tool.tcp);
-                let pose = goal.tcp(tool);
-                let line = Line::follow(joints, start, &pose, &tool.tcp, &cell.arm.limits_rad)?;
-                let to = line_end(&goal, &line)?;
+                let (line, to) = goal.line(cell, joints, tool)?;
                 let profile = line_profile(&line, speed);
                 Ok(Self { from: *joints, to, origin, profile, line: Some(line) })
+            }
+        }
+    }
+
+    /// The tool mount at a fraction of the way.
+    pub(crate) fn mount_at(&self, fraction: f64) -> Pose {
+        match &self.line {
+            Some(line) => line.mount_at(fraction),
+            None => forward(&self.joints_at(fraction)),
+        }
+    }
+
+    /// The whole turn of the tool about an axis of the base frame that is near that of joint 6.
+    pub(crate) fn turn_about_rad(&self, axis: &Vector3<f64>) -> f64 {
+        match &self.line {
+            Some(line) => line.turn_about_rad(axis),
+            None => {
+                let wrist_axis = forward(&self.from).rotation.column(2).into_owned();
+                (self.to.0[5] - self.from.0[5]) * wrist_axis.dot(axis)
             }
         }
     }
@@ -106,19 +123,28 @@ fn check_force(limit_n: Option<f64>) -> Result<(), Fault> {
 /// The configuration that the distance to the goal counts from.
 fn origin(goal: &Goal, joints: &JointConfiguration) -> JointConfiguration {
     match goal {
-        Goal::Displaced { from, .. } | Goal::Offset { from, .. } => *from,
+        Goal::Displaced { from, .. } | Goal::Offset { from, .. } | Goal::Turned { from, .. } => {
+            *from
+        }
         Goal::Joints(_) | Goal::Pose(_) => *joints,
     }
 }
 
-/// A goal, either in joints or as a pose of the tool centre point.
+/// A goal: in joints, as a pose of the tool centre point, or after a turn as both, of which the
+/// pose is exact and the joints tell the whole turns.
 enum Target {
     Joints(JointConfiguration),
     Tcp(Pose),
+    Turned(Pose, JointConfiguration),
 }
 
 impl Target {
-    fn of(goal: &Goal, joints: &JointConfiguration, tool: &ToolSpec) -> Result<Self, Fault> {
+    fn of(
+        cell: &Cell,
+        goal: &Goal,
+        joints: &JointConfiguration,
+        tool: &ToolSpec,
+    ) -> Result<Self, Fault> {
         let origin = origin(goal, joints);
         if !origin.is_finite() {
             return Err(bad("the start of a displacement has joints that are not finite"));
@@ -136,14 +162,50 @@ impl Target {
             Goal::Offset { by_m, frame, .. } => {
                 displaced(&origin, Vector3::from(*by_m), *frame, tool)
             }
+            Goal::Turned { angle_rad, advance_m, axis, frame, .. } => {
+                check_turn(*angle_rad, *advance_m)?;
+                let (angle_rad, advance_m) = (*angle_rad, *advance_m);
+                let turn = Turn { angle_rad, advance_m, axis: axis.unit(), frame: *frame };
+                let (pose, end) = turn.end(&origin, tool, &cell.arm.limits_rad)?;
+                Ok(Self::Turned(pose, end))
+            }
         }
     }
 
     fn tcp(&self, tool: &ToolSpec) -> Pose {
         match self {
             Self::Joints(joints) => forward(joints).compose(&tool.tcp),
-            Self::Tcp(pose) => *pose,
+            Self::Tcp(pose) | Self::Turned(pose, _) => *pose,
         }
+    }
+
+    /// The straight line there, and the joints at its end. Only a turn takes more than the shorter
+    /// way around.
+    fn line(
+        &self,
+        cell: &Cell,
+        joints: &JointConfiguration,
+        tool: &ToolSpec,
+    ) -> Result<(Line, JointConfiguration), Fault> {
+        let ranges = &cell.arm.limits_rad;
+        let start = forward(joints).compose(&tool.tcp);
+        let pose = self.tcp(tool);
+        let turn_rad = match self {
+            Self::Turned(_, end) => turned::whole_turn(joints, &start, &pose, end, tool),
+            Self::Joints(_) | Self::Tcp(_) => None,
+        };
+        let line = match turn_rad {
+            Some(turn_rad) => {
+                let shift_m = pose.translation_m - start.translation_m;
+                Line::turning(joints, start, (shift_m, turn_rad), &tool.tcp, ranges)?
+            }
+            None => Line::follow(joints, start, &pose, &tool.tcp, ranges)?,
+        };
+        let to = match self {
+            Self::Tcp(_) => line.end(),
+            Self::Joints(to) | Self::Turned(_, to) => line_end(to, &line)?,
+        };
+        Ok((line, to))
     }
 
     fn joints(
@@ -153,7 +215,7 @@ impl Target {
         tool: &ToolSpec,
     ) -> Result<JointConfiguration, Fault> {
         let pose = match self {
-            Self::Joints(joints) => return Ok(*joints),
+            Self::Joints(joints) | Self::Turned(_, joints) => return Ok(*joints),
             Self::Tcp(pose) => pose,
         };
         let ranges = &cell.arm.limits_rad;
@@ -200,6 +262,18 @@ fn displaced(
     Ok(Target::Tcp(tcp.displaced(by_m)))
 }
 
+fn check_turn(angle_rad: f64, advance_m: f64) -> Result<(), Fault> {
+    let within = |value: f64, most: f64| (-most..=most).contains(&value);
+    if !within(angle_rad, turned::ANGLE_RAD_MAX) {
+        let most = turned::ANGLE_RAD_MAX;
+        return Err(bad(format!("a turn by {angle_rad} rad, which must be within {most:.1} rad")));
+    }
+    if !within(advance_m, FAR_M) {
+        return Err(bad(format!("an advance by {advance_m} m, which must be within {FAR_M} m")));
+    }
+    Ok(())
+}
+
 fn check_pose(pose: &Pose) -> Result<(), Fault> {
     let defect = (pose.rotation * pose.rotation.transpose() - Matrix3::identity()).abs().max();
     // Written so that a value that is not a number fails.
@@ -212,10 +286,9 @@ fn check_pose(pose: &Pose) -> Result<(), Fault> {
     Ok(())
 }
 
-/// The joints at the end of a line: those commanded, if the line leads there.
-fn line_end(goal: &Target, line: &Line) -> Result<JointConfiguration, Fault> {
+/// The joints at the end of a line to joints: those commanded, if the line leads there.
+fn line_end(to: &JointConfiguration, line: &Line) -> Result<JointConfiguration, Fault> {
     let end = line.end();
-    let Target::Joints(to) = goal else { return Ok(end) };
     for (number, (reached, wanted)) in (1..=JOINT_COUNT).zip(end.0.iter().zip(to.0)) {
         if (reached - wanted).abs() > SAME_JOINTS_RAD {
             return Err(bad(format!(

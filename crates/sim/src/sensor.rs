@@ -90,8 +90,14 @@ impl Average {
 mod tests {
     use super::*;
 
-    const SPEC: ForceSensorSpec =
-        ForceSensorSpec { noise_n: 0.5, bias_n: 0.2, window: 4, sample_s: 0.01 };
+    const SPEC: ForceSensorSpec = ForceSensorSpec {
+        noise_n: 0.5,
+        bias_n: 0.2,
+        bias_uniform_n: 0.0,
+        bias_normal_n: 0.0,
+        window: 4,
+        sample_s: 0.01,
+    };
 
     #[test]
     fn a_force_that_sets_in_is_read_a_window_later() {

@@ -4,11 +4,13 @@
 //! seed). How a motion is carried out is in `travel`.
 
 use crate::cell::Cell;
-use crate::faults::{Acts, FaultPlan};
+use crate::faults::{Acts, FaultPlan, Interruption, StopKind};
+use crate::feeders::Feeder;
 use crate::gripper::Inventory;
-use crate::inputs::{self, Output};
+use crate::inputs::{Output, Sources, Wire};
 use crate::kinematics::forward;
-use crate::random::{self, Stream};
+use crate::random::{self, Stream, counter_of};
+use crate::seating::Seating;
 use crate::sensor::Sensor;
 use crate::world::World;
 use obverse_geometry::{JointConfiguration, Pose};
@@ -29,8 +31,17 @@ pub struct Sim {
     pub(crate) now_s: f64,
     pub(crate) stopped: bool,
     pub(crate) acts: Acts,
-    outputs: Vec<Output>,
+    pub(crate) outputs: Vec<Output>,
+    /// The wires of the inputs; none if all are as they should be.
+    pub(crate) wires: Vec<Wire>,
+    pub(crate) feeders: Vec<Feeder>,
+    /// How many motions were begun.
+    pub(crate) motions: u64,
+    /// How many things have fallen.
+    pub(crate) falls: u64,
     pub(crate) items: Inventory,
+    /// How each item is in a seat, if it is in one.
+    pub(crate) seatings: Vec<Option<Seating>>,
     /// The contact force where the arm stands, in newtons.
     pub(crate) force_n: f64,
     pub(crate) last_motion: MotionReport,
@@ -42,14 +53,28 @@ impl Sim {
     /// A workcell as its file describes it; the seed decides what the file leaves uncertain.
     #[must_use]
     pub fn new(cell: &Cell, seed: u64) -> Self {
+        Self::shared(Arc::new(cell.clone()), seed)
+    }
+
+    /// The same, of a cell that many have in common: nothing of it is copied.
+    #[must_use]
+    pub fn shared(cell: Arc<Cell>, seed: u64) -> Self {
         let world = World::new(cell, seed);
+        let cell = &world.cell;
+        let mut items = Inventory::new(world.item_poses());
+        let feeders = Feeder::all(&world, &mut items);
         let mut sim = Self {
             joints: cell.arm.home,
             now_s: 0.0,
             stopped: false,
             acts: Acts::default(),
             outputs: vec![Output::default(); usize::from(cell.output_count)],
-            items: Inventory::new(world.item_poses()),
+            wires: Vec::new(),
+            feeders,
+            motions: 0,
+            falls: 0,
+            items,
+            seatings: vec![None; world.cell.items.len()],
             force_n: 0.0,
             last_motion: MotionReport {
                 end: MotionEnd::Reached,
@@ -61,15 +86,22 @@ impl Sim {
             looks_max: None,
         };
         // A gripper that is closed without power holds what is in it from the start.
-        if cell.gripper.is_some_and(|gripper| !gripper.closed_level) {
+        if sim.world.cell.gripper.is_some_and(|gripper| !gripper.closed_level) {
             sim.close_gripper();
         }
+        sim.wire();
         sim
     }
 
-    /// Stop an act part way; a plan for an act that was begun already does nothing.
+    /// Stop an act part way by a protective stop; a plan for an act that was begun already does
+    /// nothing.
     pub fn inject(&mut self, plan: FaultPlan) {
-        self.acts.inject(plan);
+        self.inject_as(plan, StopKind::Protective);
+    }
+
+    /// Stop an act part way; a plan for an act that was begun already does nothing.
+    pub fn inject_as(&mut self, plan: FaultPlan, kind: StopKind) {
+        self.acts.inject(plan, kind);
     }
 
     /// How many acts (calls of `execute`, `set_output` and `wait`) were begun.
@@ -84,10 +116,17 @@ impl Sim {
         &self.world.cell
     }
 
-    /// Where an item truly is, in the base frame: what tests and observers may know, not programs.
+    /// Where an item truly is, in the base frame, if it is in the cell: what tests and observers
+    /// may know, not programs.
     #[must_use]
     pub fn true_pose(&self, item: ItemId) -> Option<Pose> {
         self.items.pose(usize::from(item.0), &self.joints)
+    }
+
+    /// How an item is in a seat, if it was brought into one: what tests and observers may know.
+    #[must_use]
+    pub fn seating(&self, item: ItemId) -> Option<&Seating> {
+        self.seatings.get(usize::from(item.0))?.as_ref()
     }
 
     /// The whole state of the world as numbers, beyond what a program can command: the clock, a
@@ -102,6 +141,16 @@ impl Sim {
                 pose.translation_m.iter().for_each(|x| sink(x.to_bits()));
             }
         }
+        self.seatings_as_numbers(sink);
+    }
+
+    /// How items are in seats, as numbers.
+    pub(crate) fn seatings_as_numbers(&self, sink: &mut dyn FnMut(u64)) {
+        for seating in self.seatings.iter().flatten() {
+            sink(seating.depth_m.to_bits());
+            sink(seating.turned_rad.to_bits());
+            sink(u64::from(seating.crossed));
+        }
     }
 
     fn bit(&self, bit: u16) -> Result<usize, Fault> {
@@ -114,32 +163,103 @@ impl Sim {
     }
 
     fn drive(&mut self, bit: usize, level: bool) {
-        let changed = self.outputs[bit].level != level;
-        self.outputs[bit].set(level, self.now_s);
-        let Some(gripper) = self.world.cell.gripper else { return };
-        if !changed || usize::from(gripper.output) != bit {
+        let cell = &self.world.cell;
+        let (seed, now_s) = (self.world.seed, self.now_s);
+        let stick = cell.chance.output_sticks.get(bit).copied().unwrap_or_default();
+        let changed = self.outputs[bit].set(level, now_s, |change| {
+            random::happens(stick, seed, Stream::OutputStick, counter_of(bit, change))
+        });
+        if changed {
+            self.follow(bit, level);
+            self.settle();
+        }
+    }
+
+    /// Do what follows from the change of an output.
+    fn follow(&mut self, bit: usize, level: bool) {
+        let world = self.world.clone();
+        for (index, spec) in world.cell.feeders.iter().enumerate() {
+            if usize::from(spec.output) == bit && spec.asks_level == level {
+                self.feeders[index].ask(index, self.now_s, &world, &mut self.items);
+                if self.items.held() != Some(spec.item) {
+                    self.seatings[spec.item] = None;
+                }
+            }
+        }
+        let Some(gripper) = &world.cell.gripper else { return };
+        if usize::from(gripper.output) != bit {
             return;
         }
         if level == gripper.closed_level {
             self.close_gripper();
         } else {
+            if let Some(seating) = self.items.held().and_then(|item| self.seatings[item].as_mut()) {
+                seating.is_held = false;
+            }
             // What is let go no longer presses on the sensor.
-            self.items.open(&self.joints);
+            let let_go = self.items.open(gripper, &self.joints);
             self.force_n = 0.0;
+            if let Some((item, false)) = let_go {
+                self.fall_unless_supported(item);
+            }
         }
     }
 
     fn close_gripper(&mut self) {
-        let cell = &self.world.cell;
-        let Some(gripper) = &cell.gripper else { return };
-        let tcp = cell.tools.get(usize::from(gripper.tool)).map_or(Pose::identity(), |t| t.tcp);
-        self.items.close(&cell.items, gripper, &tcp, &self.joints);
+        let world = self.world.clone();
+        if let Some(hand) = world.hand() {
+            self.items.close(&world.cell.items, &hand, &self.joints);
+        }
+    }
+
+    /// Let what time has brought come to pass.
+    pub(crate) fn settle(&mut self) {
+        if !self.feeders.is_empty() {
+            let world = self.world.clone();
+            for (index, feeder) in self.feeders.iter_mut().enumerate() {
+                feeder.arrive(index, self.now_s, &world, &mut self.items);
+            }
+        }
+        if !self.wires.is_empty() {
+            let mut wires = std::mem::take(&mut self.wires);
+            let chance = &self.world.cell.chance;
+            let rules = chance.input_flaws.iter().zip(&self.world.cell.inputs);
+            self.with_sources(|sources| {
+                for (input, (wire, (flaw, rule))) in wires.iter_mut().zip(rules).enumerate() {
+                    wire.follow(flaw, rule, sources, self.world.seed, input);
+                }
+            });
+            self.wires = wires;
+        }
+    }
+
+    /// Connect the wires that may be flawed, each at its level.
+    fn wire(&mut self) {
+        let flawed = self.world.cell.chance.input_flaws.len();
+        let rules = self.world.cell.inputs.iter().take(flawed);
+        let levels =
+            self.with_sources(|sources| rules.map(|rule| sources.level(rule)).collect::<Vec<_>>());
+        self.wires = levels.into_iter().map(Wire::new).collect();
+    }
+
+    fn with_sources<T>(&self, ask: impl FnOnce(&Sources<'_>) -> T) -> T {
+        let feeders = &self.world.cell.feeders;
+        let is_part_there = |feeder: usize| {
+            let spec = feeders.get(feeder);
+            spec.is_some_and(|spec| Feeder::has_part(spec, &self.world, &self.items, &self.joints))
+        };
+        ask(&Sources {
+            outputs: &self.outputs,
+            now_s: self.now_s,
+            is_holding: self.items.held().is_some(),
+            is_part_there: &is_part_there,
+        })
     }
 
     /// Stop in the middle of an act.
-    pub(crate) fn protective_stop(&mut self, fraction: f64) -> Fault {
-        self.stopped = true;
-        Fault::ProtectiveStop { fraction }
+    pub(crate) fn interrupt(&mut self, interruption: Interruption) -> Fault {
+        self.stopped |= interruption.kind != StopKind::Short;
+        interruption.fault()
     }
 }
 
@@ -149,11 +269,14 @@ impl Arm for Sim {
     }
 
     fn execute(&mut self, motion: &Motion) -> Result<MotionReport, Fault> {
-        let interruption = self.acts.begin();
+        let planned = self.acts.begin();
         if self.stopped {
             return Err(Fault::Stopped);
         }
-        self.travel(motion, interruption)
+        let number = self.motions;
+        self.motions += 1;
+        let by_chance = Interruption::by_chance(&self.world.cell.chance, self.world.seed, number);
+        self.travel(motion, planned.or(by_chance))
     }
 
     fn last_motion(&self) -> MotionReport {
@@ -183,11 +306,11 @@ impl DigitalIo for Sim {
     fn set_output(&mut self, bit: u16, level: bool) -> Result<(), Fault> {
         let interruption = self.acts.begin();
         let index = self.bit(bit)?;
-        if let Some(fraction) = interruption {
-            if fraction >= 0.5 {
+        if let Some(interruption) = interruption {
+            if interruption.fraction >= 0.5 {
                 self.drive(index, level);
             }
-            return Err(self.protective_stop(fraction));
+            return Err(self.interrupt(interruption));
         }
         self.drive(index, level);
         Ok(())
@@ -200,7 +323,10 @@ impl DigitalIo for Sim {
     fn input(&self, bit: u16) -> Result<bool, Fault> {
         let rule = self.world.cell.inputs.get(usize::from(bit));
         let rule = rule.ok_or_else(|| Fault::Missing { what: format!("input {bit}") })?;
-        Ok(inputs::level(rule, &self.outputs, self.now_s, self.items.held().is_some()))
+        Ok(match self.wires.get(usize::from(bit)) {
+            Some(wire) => wire.level(self.now_s, self.world.seed, usize::from(bit)),
+            None => self.with_sources(|sources| sources.level(rule)),
+        })
     }
 }
 
@@ -212,7 +338,7 @@ impl Gripper for Sim {
 
 impl ForceTorque for Sim {
     fn force_n(&self) -> f64 {
-        let sensor = Sensor { spec: &self.world.cell.force_sensor, seed: self.world.seed };
+        let sensor = Sensor { spec: &self.world.sensor, seed: self.world.seed };
         sensor.settled_n(self.force_n, self.now_s)
     }
 }
@@ -228,8 +354,9 @@ impl Clock for Sim {
             let why = format!("a wait of {duration_s} s, which must be from 0 to {WAIT_S_MAX} s");
             return Err(Fault::BadCommand { why });
         }
-        self.now_s += duration_s * interruption.unwrap_or(1.0);
-        interruption.map_or(Ok(()), |fraction| Err(self.protective_stop(fraction)))
+        self.now_s += duration_s * interruption.map_or(1.0, |interruption| interruption.fraction);
+        self.settle();
+        interruption.map_or(Ok(()), |interruption| Err(self.interrupt(interruption)))
     }
 }
 

@@ -11,9 +11,10 @@
 use crate::bodies::{Mover, Moving, Place, moving, resting};
 use crate::cell::ToolSpec;
 use crate::gripper::Inventory;
-use crate::insertion::{AtHole, HeldPeg};
+use crate::insertion::{AtHole, HeldPeg, Over};
 use crate::reader::{Look, ROUNDING_N, Reader};
 use crate::route::Route;
+use crate::seating::Seating;
 use crate::sensor::Sensor;
 use crate::world::{Owner, Standing, World};
 use nalgebra::Vector3;
@@ -92,6 +93,17 @@ impl Pair {
     }
 }
 
+/// A push from the side against an item that stands.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Push {
+    /// The item, by its place in the cell's list.
+    pub(crate) item: usize,
+    /// The force on it along x and y of the base frame.
+    pub(crate) towards_n: [f64; 2],
+    /// The magnitude of that.
+    pub(crate) force_n: f64,
+}
+
 /// What a look at all pairs found.
 struct Seen {
     touching: bool,
@@ -113,17 +125,23 @@ pub(crate) struct Sweep<'a> {
     moving: Vec<Moving>,
     pairs: Vec<Pair>,
     peg: Option<HeldPeg>,
+    /// The largest contact force that was met.
+    pub(crate) most_n: f64,
+    /// The hardest push from the side against an item that stands.
+    pub(crate) pushed: Option<Push>,
     /// How often all pairs may be looked at, if not as often as it takes.
     pub(crate) looks_max: Option<u32>,
 }
 
 impl<'a> Sweep<'a> {
-    /// Prepare the search: only pairs that could meet on this route are kept.
+    /// Prepare the search: only pairs that could meet on this route are kept. The held item was
+    /// left in a seat so, if it was.
     pub(crate) fn new(
         world: &'a World,
         route: &'a Route,
         items: &Inventory,
         tool: &ToolSpec,
+        left: Option<&Seating>,
     ) -> Self {
         let cell = &world.cell;
         let mut sweep = Self {
@@ -134,8 +152,13 @@ impl<'a> Sweep<'a> {
             moving: Vec::new(),
             pairs: Vec::new(),
             peg: HeldPeg::of(cell, items),
+            most_n: 0.0,
+            pushed: None,
             looks_max: None,
         };
+        if let Some(peg) = &mut sweep.peg {
+            peg.approach(world, route, items, left);
+        }
         if !(world.fixed.is_empty() && sweep.resting.is_empty()) {
             sweep.moving = moving(cell, route, items, tool);
             sweep.pairs = sweep.pair_up();
@@ -189,7 +212,13 @@ impl<'a> Sweep<'a> {
         force_n: f64,
         limit_n: Option<f64>,
     ) -> Outcome {
-        let sensor = Sensor { spec: &self.world.cell.force_sensor, seed: self.world.seed };
+        let outcome = self.search(until, now_s, force_n, limit_n);
+        self.note(outcome.force_n);
+        outcome
+    }
+
+    fn search(&mut self, until: f64, now_s: f64, force_n: f64, limit_n: Option<f64>) -> Outcome {
+        let sensor = Sensor { spec: &self.world.sensor, seed: self.world.seed };
         // Where noise alone may exceed the limit, every sample counts.
         let watched = limit_n.is_some_and(|limit| limit <= sensor.idle_max_n());
         if self.pairs.is_empty() && !watched {
@@ -226,9 +255,32 @@ impl<'a> Sweep<'a> {
             } else {
                 reader.rest();
             }
+            self.note(here.force_n);
             before = here;
             fraction = seen.next.max(fraction + f64::EPSILON).min(until);
         }
+    }
+
+    /// Take note of the forces where the motion has come to.
+    fn note(&mut self, force_n: f64) {
+        self.most_n = self.most_n.max(force_n);
+        if force_n <= 0.0 || self.resting.is_empty() {
+            return;
+        }
+        for pair in &self.pairs {
+            let Owner::Item(item) = self.standing(pair.standing).owner else { continue };
+            let [x, y] = [-pair.force_n.x, -pair.force_n.y];
+            let push = Push { item, towards_n: [x, y], force_n: libm::hypot(x, y) };
+            if self.pushed.is_none_or(|most| push.force_n > most.force_n) {
+                self.pushed = Some(push);
+            }
+        }
+    }
+
+    /// How the held item is left in a seat at a fraction of the route.
+    pub(crate) fn left(&self, fraction: f64) -> Option<Seating> {
+        let peg = self.peg.as_ref()?;
+        peg.left(fraction, &self.route.mount_at(fraction), &self.world.cell.contact)
     }
 
     /// Look at every pair that is due.
@@ -276,15 +328,17 @@ impl<'a> Sweep<'a> {
         let (fraction, mount) = (place.fraction, place.mount);
         let (body, carrier) = moving.at(place);
         let mut apart_mm = standing.obstacle.at_least_mm(body, carrier);
-        let mut stride_mm = STEP_MM;
+        let (mut stride_mm, mut seat_stride) = (STEP_MM, None);
         pair.force_n = Vector3::zeros();
         if apart_mm < NEAR_MM {
             let contact = &self.world.cell.contact;
             let peg = self.peg.as_ref().filter(|_| moving.is_peg);
-            match peg.and_then(|peg| peg.at(&standing.holes, &mount, contact)) {
+            let (number, holes) = (pair.standing, &standing.holes);
+            let over = Over { standing: number, holes, fraction, mount: &mount };
+            match peg.and_then(|peg| peg.at(&over, contact)) {
                 Some(AtHole::Over(over_mm)) => apart_mm = over_mm.max(apart_mm),
-                Some(AtHole::In { force_n, steady_mm }) => {
-                    apart_mm = 0.0;
+                Some(AtHole::In { force_n, steady_mm, stride }) => {
+                    (apart_mm, seat_stride) = (0.0, stride);
                     pair.force_n = force_n;
                     stride_mm = steady_mm.clamp(STEP_MM, BORE_STRIDE_MM);
                 }
@@ -297,7 +351,7 @@ impl<'a> Sweep<'a> {
             }
         }
         pair.touching = apart_mm <= SKIN_MM;
-        pair.stride = stride_mm / moving.way_mm;
+        pair.stride = seat_stride.unwrap_or(stride_mm / moving.way_mm);
         pair.due = fraction + (apart_mm - 0.5 * SKIN_MM) / moving.way_mm;
     }
 

@@ -4,6 +4,8 @@
 //! into a report or a fault.
 
 use crate::bodies::Mover;
+use crate::faults::Interruption;
+use crate::mishaps::Travelled;
 use crate::robot::LINK_NAMES;
 use crate::route::{self, Route};
 use crate::sensor::Sensor;
@@ -14,43 +16,63 @@ use obverse_geometry::Pose;
 use obverse_workcell::{Fault, Motion, MotionEnd, MotionReport};
 
 impl Sim {
-    /// Carry out a motion, to be stopped at the fraction `interruption` of its way if given.
+    /// Carry out a motion, to be stopped on its way if an interruption is given.
     pub(crate) fn travel(
         &mut self,
         motion: &Motion,
-        interruption: Option<f64>,
+        interruption: Option<Interruption>,
     ) -> Result<MotionReport, Fault> {
         let world = self.world.clone();
         let tool = route::tool(&world.cell, motion.tool)?;
         let route = Route::plan(&world.cell, &self.joints, motion)?;
-        let until = interruption.unwrap_or(1.0);
-        let mut sweep = Sweep::new(&world, &route, &self.items, tool);
+        let until = interruption.map_or(1.0, |interruption| interruption.fraction);
+        let left = self.items.held().and_then(|item| self.seatings[item].as_ref());
+        let mut sweep = Sweep::new(&world, &route, &self.items, tool, left);
         sweep.looks_max = self.looks_max;
         let outcome = sweep.run(until, self.now_s, self.force_n, motion.force_limit_n);
+        if let Some(item) = self.items.held() {
+            self.seatings[item] = sweep.left(outcome.fraction);
+        }
         self.joints = route.joints_at(outcome.fraction);
         let duration_s = route.profile.time_at_s(outcome.fraction);
         self.now_s += duration_s;
         self.force_n = outcome.force_n;
-        let end = match outcome.end {
-            End::Reached if interruption.is_some() => return Err(self.protective_stop(until)),
-            End::Reached => MotionEnd::Reached,
-            End::Force => MotionEnd::StoppedByForce,
+        let end = self.end(&outcome, interruption, &tool.name);
+        let report = end.map(|end| self.report(end, &route, &tool.tcp, &outcome, duration_s));
+        let (most_n, pushed) = (sweep.most_n, sweep.pushed);
+        self.suffer(&Travelled { route: &route, fraction: outcome.fraction, most_n, pushed, tool });
+        self.settle();
+        self.last_motion = report?;
+        Ok(self.last_motion)
+    }
+
+    /// How the motion ended, which may stop the arm.
+    fn end(
+        &mut self,
+        outcome: &Outcome,
+        interruption: Option<Interruption>,
+        tool: &str,
+    ) -> Result<MotionEnd, Fault> {
+        match outcome.end {
+            End::Reached => match interruption {
+                Some(interruption) => Err(self.interrupt(interruption)),
+                None => Ok(MotionEnd::Reached),
+            },
+            End::Force => Ok(MotionEnd::StoppedByForce),
             End::GivenUp => {
                 self.stopped = true;
-                return Err(Fault::Stopped);
+                Err(Fault::Stopped)
             }
             End::Collision { mover, owner, force_n } => {
                 self.stopped = true;
-                return Err(Fault::Collision {
-                    body: self.mover_name(mover, &tool.name),
+                Err(Fault::Collision {
+                    body: self.mover_name(mover, tool),
                     with: self.owner_name(owner),
                     fraction: outcome.fraction,
                     force_n,
-                });
+                })
             }
-        };
-        self.last_motion = self.report(end, &route, &tool.tcp, &outcome, duration_s);
-        Ok(self.last_motion)
+        }
     }
 
     fn report(
@@ -63,7 +85,7 @@ impl Sim {
     ) -> MotionReport {
         let here_m = tcp_of(&self.joints, tcp).translation_m;
         let origin_m = tcp_of(&route.origin, tcp).translation_m;
-        let sensor = Sensor { spec: &self.world.cell.force_sensor, seed: self.world.seed };
+        let sensor = Sensor { spec: &self.world.sensor, seed: self.world.seed };
         let settled_n = sensor.settled_n(self.force_n, self.now_s);
         MotionReport {
             end,

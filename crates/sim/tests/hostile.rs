@@ -9,9 +9,10 @@ use obverse_sim::random::{Stream, bits, unit};
 use obverse_sim::{Cell, FaultPlan, Sim};
 use obverse_workcell::{Arm, Clock, DigitalIo, Goal, Motion, Path, Safety, Speed, ToolId};
 
-const FILES: [&str; 2] = [
+const FILES: [&str; 3] = [
     include_str!("../../../programs/bench_cell.toml"),
     include_str!("../../../programs/peg_in_hole.toml"),
+    include_str!("uncertain.toml"),
 ];
 
 /// A file with a few of its bytes changed, cut or repeated.
@@ -33,8 +34,8 @@ fn damaged(file: &str, number: u64) -> String {
 #[test]
 fn a_damaged_file_is_refused_or_makes_a_cell_that_runs() {
     let (mut refused, mut run) = (0, 0);
-    for number in 0..600 {
-        let text = damaged(FILES[(number % 2) as usize], number);
+    for number in 0..900 {
+        let text = damaged(FILES[(number % 3) as usize], number);
         match Cell::parse(&text) {
             Err(error) => {
                 assert!(error.line >= 1 && error.column >= 1 && !error.message.is_empty());
@@ -42,10 +43,16 @@ fn a_damaged_file_is_refused_or_makes_a_cell_that_runs() {
             }
             Ok(cell) => {
                 let mut sim = Sim::new(&cell, number);
-                let _ = sim.set_output(0, true);
                 let mut goal = sim.joints();
                 goal.0[0] += 0.3;
-                let _ = sim.execute(&by_joints(goal));
+                for is_asked in [true, false] {
+                    let _ = sim.set_output(3, is_asked);
+                    let _ = sim.wait(0.3);
+                    let _ = sim.set_output(0, is_asked);
+                    let _ = sim.execute(&by_joints(goal));
+                    sim.release();
+                }
+                let _ = sim.truth();
                 run += 1;
             }
         }
@@ -68,7 +75,7 @@ fn wild(seed: u64, counter: u64) -> f64 {
 fn wild_motion(seed: u64, from: JointConfiguration) -> Motion {
     let number = |counter| wild(seed, counter);
     let choice = |counter: u64, count: u64| bits(seed, Stream::Dice, 500 + counter) % count;
-    let goal = match choice(0, 4) {
+    let goal = match choice(0, 5) {
         0 => Goal::Joints(JointConfiguration(std::array::from_fn(|joint| number(joint as u64)))),
         1 => Goal::Pose(Pose {
             rotation: Matrix3::from_fn(|row, column| number((3 * row + column) as u64)),
@@ -80,7 +87,14 @@ fn wild_motion(seed: u64, from: JointConfiguration) -> Motion {
             axis: Axis::MinusZ,
             frame: Frame::ToolMount,
         },
-        _ => Goal::Offset { from, by_m: [number(40), number(41), number(42)], frame: Frame::Base },
+        3 => Goal::Offset { from, by_m: [number(40), number(41), number(42)], frame: Frame::Base },
+        _ => Goal::Turned {
+            from,
+            angle_rad: number(43),
+            advance_m: number(44),
+            axis: Axis::PlusX,
+            frame: Frame::Tcp,
+        },
     };
     Motion {
         goal,
@@ -93,8 +107,13 @@ fn wild_motion(seed: u64, from: JointConfiguration) -> Motion {
 
 #[test]
 fn wild_commands_leave_finite_joints_and_a_clock_that_never_goes_back() {
-    let cell = Cell::parse(FILES[0]).unwrap();
-    let mut sim = Sim::new(&cell, 1);
+    for file in FILES {
+        wildly(&Cell::parse(file).unwrap());
+    }
+}
+
+fn wildly(cell: &Cell) {
+    let mut sim = Sim::new(cell, 1);
     for seed in 0..2_000 {
         if seed % 5 == 0 {
             sim.inject(FaultPlan { act: sim.acts_begun(), fraction: wild(seed, 60) });

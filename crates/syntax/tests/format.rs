@@ -127,7 +127,29 @@ fn long_lines_are_broken_after_commas_and_before_operators() {
     let name = "n".repeat(30);
     becomes(
         &format!("var a = {name} + {name} * {name} - {name}"),
-        &format!("var a = {name} + {name}\n    * {name} - {name}\n"),
+        &format!("var a = {name}\n    + {name} * {name}\n    - {name}\n"),
+    );
+}
+
+#[test]
+fn long_conditions_are_broken_where_they_are_least_deep() {
+    let limits = |word: &str, count: usize| vec!["limit > 100"; count].join(word);
+    let condition = |text: &str| format!("sequence main {{ if {text} {{ break }} }}");
+    let broken = |text: &str| format!("sequence main {{\n  if {text} {{\n    break\n  }}\n}}\n");
+    becomes(
+        &condition(&limits(" and ", 7)),
+        &broken(&format!("{}\n      and limit > 100", limits(" and ", 6))),
+    );
+    let inner = format!("(limit > 200 or {})", limits(" and ", 2));
+    becomes(
+        &condition(&format!("{} and {inner} and holding", limits(" and ", 4))),
+        &broken(&format!("{}\n      and {inner} and holding", limits(" and ", 4))),
+    );
+    let sum = format!("{} > 1", ["summand_of_a_sum"; 6].join(" + "));
+    let (first, last) = sum.split_at(19 * 4 - 3);
+    becomes(
+        &condition(&format!("holding or {sum}")),
+        &broken(&format!("holding\n      or {}\n      {}", first.trim(), last.trim())),
     );
 }
 

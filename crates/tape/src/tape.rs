@@ -15,8 +15,6 @@ pub trait Recorder {
     fn control(&mut self, word: u64);
     /// Write a word on a fault that became an error.
     fn fault(&mut self, word: u64);
-    /// Whether more has been recorded than may be.
-    fn is_full(&self) -> bool;
 }
 
 /// The recorder of a run that will not go back.
@@ -34,10 +32,6 @@ impl Recorder for NoTape {
     fn control(&mut self, _: u64) {}
     #[inline(always)]
     fn fault(&mut self, _: u64) {}
-    #[inline(always)]
-    fn is_full(&self) -> bool {
-        false
-    }
 }
 
 /// A place on the tape: the length of each stream.
@@ -109,14 +103,6 @@ impl Recorder for Tape {
     fn fault(&mut self, word: u64) {
         self.faults.push(word);
     }
-
-    #[inline(always)]
-    fn is_full(&self) -> bool {
-        let joints = self.joints.full_chunks() * size_of::<[f64; 6]>() / size_of::<u64>();
-        let words = self.words.full_chunks() + self.control.full_chunks();
-        let words = words + self.faults.full_chunks();
-        words + self.bits.full_chunks() + joints > self.limit_chunks
-    }
 }
 
 impl Tape {
@@ -144,6 +130,29 @@ impl Tape {
             control: self.control.len() as u64,
             faults: self.faults.len() as u64,
         }
+    }
+
+    /// How many chunks are full, each as large as one of words.
+    fn held_chunks(&self) -> usize {
+        let joints = self.joints.full_chunks() * size_of::<[f64; 6]>() / size_of::<u64>();
+        let words = self.words.full_chunks() + self.control.full_chunks();
+        let words = words + self.faults.full_chunks();
+        words + self.bits.full_chunks() + joints
+    }
+
+    /// Whether more has been recorded than may be.
+    #[must_use]
+    pub fn is_full(&self) -> bool {
+        self.held_chunks() > self.limit_chunks
+    }
+
+    /// How many words, or bits in their place, can be recorded for certain before it is full:
+    /// whoever records no more need not ask in between.
+    #[must_use]
+    pub fn room_words(&self) -> u64 {
+        // The chunks that are being filled, of words and of bits, may be about to be full.
+        let chunks = self.limit_chunks.saturating_sub(self.held_chunks() + 1);
+        (chunks as u64).saturating_mul(CHUNK as u64)
     }
 
     /// Whether nothing is on it.
@@ -252,4 +261,29 @@ pub struct Streams {
     pub faults: Vec<u64>,
     /// What was recorded before and dropped, in bits.
     pub dropped_bits: u64,
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_tape_is_not_full_before_its_room_is_used_up() {
+        let mut tape = Tape::with_limit(5 * CHUNK * 8);
+        // The next bit needs another chunk, and the next word but one.
+        (0..64 * CHUNK + 63).for_each(|_| tape.bit(true));
+        (1..CHUNK).for_each(|_| tape.word(7));
+        let mut asked = 0;
+        while !tape.is_full() {
+            asked += 1;
+            for _ in 0..tape.room_words() {
+                tape.word(7);
+                assert!(!tape.is_full(), "after {} words", tape.place().words);
+            }
+            tape.bit(true);
+            tape.word(7);
+        }
+        assert_eq!(tape.place().words, 5 * CHUNK as u64 + 1);
+        assert_eq!(asked, 2);
+    }
 }

@@ -8,7 +8,6 @@ use crate::programs::{self, Options};
 use arbitrary::{Result, Unstructured};
 use obverse_bytecode::{Verified, verify};
 use obverse_compiler::{NoInverse, compile, invert};
-use obverse_isa::Type;
 use obverse_syntax::ast::{Item, Program};
 use obverse_syntax::format::{format, print};
 use obverse_syntax::parse;
@@ -16,8 +15,9 @@ use obverse_vm::{Direction, Limits, Machine, Stop};
 use obverse_workcell::{Arm, DigitalIo, Gripper};
 use std::collections::BTreeSet;
 
-/// How far two numbers may be apart that are the same but for rounding.
-const TOLERANCE: f64 = 1e-9;
+/// How far two angles of a joint may be apart that are the same but for rounding: a way there and
+/// back is computed in each direction.
+const TOLERANCE_RAD: f64 = 1e-9;
 
 /// The longest run that is compared, in instructions.
 const MAX_STEPS: u64 = 200_000;
@@ -86,7 +86,8 @@ fn restricted(source: &str, other: &str, sequence: &str) -> String {
 
 fn name_of<'s>(item: &Item<'s>) -> Option<&'s str> {
     match item {
-        Item::Cell(_) | Item::Import(_) | Item::Signal(_) | Item::Allow(_) => None,
+        Item::Cell(_) | Item::Import(_) | Item::Allow(_) => None,
+        Item::Signal(entry) => Some(entry.name.value),
         Item::Cleanup(_) => Some("cleanup"),
         Item::Io(io) => Some(io.name.value),
         Item::Joints(joints) => Some(joints.name.value),
@@ -147,10 +148,10 @@ fn verified(source: &str) -> Verified {
     }
 }
 
-/// What is compared: variables by name, with whether they are reals; joints, outputs, held.
+/// What is compared: variables by name, outputs, held, bit for bit; and joints.
 #[derive(Debug)]
 struct End {
-    globals: Vec<(String, bool, u64)>,
+    globals: Vec<(String, u64)>,
     joints: [f64; 6],
     outputs: Vec<bool>,
     held: Option<u16>,
@@ -162,9 +163,7 @@ impl End {
         let values = module.globals.iter().zip(machine.state().globals());
         let values = values.filter(|(global, _)| !global.name.starts_with('$'));
         Self {
-            globals: values
-                .map(|(global, value)| (global.name.clone(), global.of_type == Type::Real, *value))
-                .collect(),
+            globals: values.map(|(global, value)| (global.name.clone(), *value)).collect(),
             joints: cell.joints().0,
             outputs: (0..cell.output_count()).map(|bit| cell.output(bit)).collect(),
             held: cell.held().map(|item| item.0),
@@ -173,16 +172,9 @@ impl End {
 }
 
 fn is_close(a: &End, b: &End) -> bool {
-    let near = |a: f64, b: f64| (a - b).abs() <= TOLERANCE * (1.0 + a.abs().max(b.abs()));
-    let same =
-        |((name_a, is_real, a), (name_b, _, b)): (&(String, bool, u64), &(String, bool, u64))| {
-            let is_near = *is_real && near(f64::from_bits(*a), f64::from_bits(*b));
-            name_a == name_b && (a == b || is_near)
-        };
-    a.globals.len() == b.globals.len()
-        && a.globals.iter().zip(&b.globals).all(same)
-        && a.joints.iter().zip(b.joints).all(|(a, b)| near(*a, b))
-        && (&a.outputs, a.held) == (&b.outputs, b.held)
+    let near = |(a, b): (&f64, f64)| (a - b).abs() <= TOLERANCE_RAD * (1.0 + a.abs().max(b.abs()));
+    a.joints.iter().zip(b.joints).all(near)
+        && (&a.globals, &a.outputs, a.held) == (&b.globals, &b.outputs, b.held)
 }
 
 fn machine<'p>(program: &'p Verified, cell: &Logged) -> Machine<'p> {

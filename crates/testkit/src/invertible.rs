@@ -47,6 +47,7 @@ var count = 0
 var sum = 100
 var mode = 1
 var gap = 5 mm
+var width = 0.1 mm
 action pick(item_1: item, times: int) {
   move to item_1.above
   speed slow { move to q3 linearly }
@@ -60,6 +61,7 @@ action nudge(by: length) {
   move by down in base
 }
 action shift { move 3 mm x in base }
+action counted { repeat count times { toggle 5 } }
 ";
 
 /// A random program.
@@ -100,6 +102,7 @@ impl Writer<'_, '_> {
         self.line("set 3 high; sleep 10 ms");
         self.line("io lamp_off");
         self.line("mode = 1");
+        self.line("gap = 5 mm");
         let first = self.choose(&PLACES)?;
         let linearly = self.choose(&["", " linearly"])?;
         self.line(&format!("move to {first}{linearly}"));
@@ -163,7 +166,8 @@ impl Writer<'_, '_> {
             9 => {
                 let value = self.below(9)?;
                 if self.depth == 1 {
-                    self.line(&format!("mode = {value}"));
+                    let line = self.choose(&["mode = {}", "gap = 0.{} mm"])?;
+                    self.line(&line.replace("{}", &value.to_string()));
                 }
             }
             10 => {
@@ -214,15 +218,18 @@ impl Writer<'_, '_> {
     }
 
     fn update(&mut self) -> Result<()> {
-        let name = self.choose(&["count", "sum", "gap"])?;
+        let name = self.choose(&["count", "sum"])?;
         let operator = self.choose(&["+=", "-="])?;
-        let value = match name {
-            "gap" => self.choose(&["1 mm", "0.25 mm * real(fixed)"])?.to_owned(),
-            _ => match self.counters.last().cloned() {
-                Some(counter) if self.one_in(2)? => format!("{counter} * 2 + fixed"),
-                _ if name == "sum" => self.choose(&["1", "count", "-count * 3"])?.to_owned(),
-                _ => self.choose(&["1", "fixed - 5", "2"])?.to_owned(),
-            },
+        // A real comes back rounded, so that this has no inverse.
+        if self.one_in(80)? {
+            let value = self.choose(&["0.3 mm", "2.3 mm", "1.1 mm * real(fixed)"])?;
+            self.line(&format!("width {operator} {value}"));
+            return Ok(());
+        }
+        let value = match self.counters.last().cloned() {
+            Some(counter) if self.one_in(2)? => format!("{counter} * 2 + fixed"),
+            _ if name == "sum" => self.choose(&["1", "count", "-count * 3"])?.to_owned(),
+            _ => self.choose(&["1", "fixed - 5", "2"])?.to_owned(),
         };
         self.line(&format!("{name} {operator} {value}"));
         Ok(())
@@ -245,7 +252,7 @@ impl Writer<'_, '_> {
 
     /// What has perhaps no inverse, or is no program in normal form.
     fn stubborn(&mut self) -> Result<()> {
-        let line = match self.below(12)? {
+        let line = match self.below(14)? {
             0 => "sum = sum * 2",
             1 => "call shift",
             2 => "wait random(1 ms, 2 ms)",
@@ -255,6 +262,7 @@ impl Writer<'_, '_> {
             6 => "move 2 mm up in base",
             7 => "var unused_0 = 3",
             8 => "set 6 high",
+            9 => "fork { count += 1; wait 1 ms; count += 1 } and { wait 1 ms; call counted }",
             _ => "checkpoint mark",
         };
         let is_declaration = line.ends_with("here_0") || line.starts_with("var");
@@ -276,7 +284,8 @@ impl Writer<'_, '_> {
     }
 
     fn control(&mut self) -> Result<()> {
-        match self.below(7)? {
+        match self.below(8)? {
+            7 => self.fork(),
             0 => self.branch(""),
             1 => self.branch(" ending when is_fast and fixed == 3"),
             2 => self.while_loop(),
@@ -299,7 +308,14 @@ impl Writer<'_, '_> {
 
     fn branch(&mut self, assertion: &str) -> Result<()> {
         let condition = match assertion {
-            "" => self.choose(&["is_fast", "fixed > 5", "not is_fast or fixed == 3"])?,
+            "" => self.choose(&[
+                "is_fast",
+                "fixed > 5",
+                "not is_fast or fixed == 3",
+                "gap <= 5 mm",
+                "gap > 0.3 mm",
+                "width <= 0.1 mm",
+            ])?,
             _ => "is_fast and fixed == 3",
         };
         self.open(&format!("if {condition}"));
@@ -310,6 +326,35 @@ impl Writer<'_, '_> {
             self.excursion()?;
         }
         self.close(assertion);
+        Ok(())
+    }
+
+    /// Branches that share no device and no variable: one has the arm.
+    fn fork(&mut self) -> Result<()> {
+        self.open("fork");
+        for _ in 0..=self.below(2)? {
+            match self.one_in(4)? {
+                true => self.line("call nudge(2 mm)"),
+                false => self.motion()?,
+            }
+        }
+        self.close(" and {");
+        self.depth += 1;
+        let (first, second) = (
+            self.choose(&["toggle 5; sleep 2 ms", "wait 3 ms", "set 2 high"])?,
+            self.choose(&["repeat fixed times { toggle 3 }", "io lamp_on", "checkpoint mark"])?,
+        );
+        self.line(first);
+        self.line(second);
+        if self.one_in(2)? {
+            self.close(" and {");
+            self.depth += 1;
+            self.line("count += 1");
+            let between = self.choose(&["wait 2 ms", "toggle 6"])?;
+            self.line(between);
+            self.line("count -= fixed * 2");
+        }
+        self.close("");
         Ok(())
     }
 

@@ -99,6 +99,9 @@ impl Ledger {
                 from_numbers(*from, by.as_slice())
             }
             Goal::Offset { from, by_m, .. } => from_numbers(*from, by_m),
+            Goal::Turned { from, angle_rad, advance_m, .. } => {
+                from_numbers(*from, &[*advance_m, *angle_rad])
+            }
         }
     }
 }
@@ -119,7 +122,9 @@ impl Arm for Ledger {
             return Err(self.stop(fraction));
         }
         let from = match &motion.goal {
-            Goal::Displaced { from, .. } | Goal::Offset { from, .. } => *from,
+            Goal::Displaced { from, .. }
+            | Goal::Offset { from, .. }
+            | Goal::Turned { from, .. } => *from,
             Goal::Joints(_) | Goal::Pose(_) => self.joints,
         };
         let distance_m = from.largest_difference_rad(&goal);

@@ -4,6 +4,7 @@
 //! A dev-dependency only: nothing that ships links it.
 
 pub mod altered;
+pub mod always_laws;
 pub mod code;
 pub mod files;
 pub mod fork_code;
@@ -20,6 +21,7 @@ pub mod machine_laws;
 pub mod preflight_laws;
 pub mod programs;
 pub mod reach_laws;
+pub mod recovery_laws;
 pub mod reference;
 pub mod word_laws;
 

@@ -184,7 +184,15 @@ fn cell(u: &mut Unstructured<'_>, module: &Module) -> Result<Cell> {
     for item in &module.items {
         let parts = vec![cuboid(u, 0.1)?];
         let (name, grasp) = (item.name.clone(), Pose::identity());
-        cell.items.push(ItemSpec { name, pose: pose(u)?, offset, grasp, parts, peg: None });
+        cell.items.push(ItemSpec {
+            name,
+            pose: pose(u)?,
+            on: None,
+            offset,
+            grasp,
+            parts,
+            peg: None,
+        });
     }
     for name in &module.tools {
         let tcp = Pose::from_rotation_vector([0.0, 0.0, 0.1 * share(u)?], [0.0; 3]);
@@ -193,7 +201,14 @@ fn cell(u: &mut Unstructured<'_>, module: &Module) -> Result<Cell> {
     }
     for number in 0..u.int_in_range(0..=3)? {
         let (name, parts) = (format!("fixture{number}"), vec![cuboid(u, 0.4)?]);
-        cell.fixtures.push(FixtureSpec { name, pose: pose(u)?, offset, parts, holes: Vec::new() });
+        cell.fixtures.push(FixtureSpec {
+            name,
+            pose: pose(u)?,
+            on: None,
+            offset,
+            parts,
+            holes: Vec::new(),
+        });
     }
     if u.ratio(1, 3)? {
         cell.arm.limits_rad = [(-PI, PI); 6];

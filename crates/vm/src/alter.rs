@@ -48,7 +48,7 @@ impl Aside {
     fn of(self, motion: Motion) -> (Option<Motion>, Motion) {
         let [first, second] = self.by_m;
         match motion.goal {
-            Goal::Displaced { from, axis, frame, .. } => {
+            Goal::Displaced { from, axis, frame, .. } | Goal::Turned { from, axis, frame, .. } => {
                 let by_m = across(axis, first, second);
                 let goal = Goal::Offset { from, by_m, frame };
                 let before = Motion { goal, path: Path::Linear, ..motion };

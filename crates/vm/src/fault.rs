@@ -1,22 +1,26 @@
 //! Faults that become errors of the program.
 //!
 //! The act that the fault stopped counts as done as far as it came: its record is on the tape, and
-//! reversing it takes back what was done of it. Which fault becomes which error is not known here.
+//! reversing it takes back what was done of it. The toggle of an output has no record, and is
+//! finished first. Which fault becomes which error is not known here.
 
 use crate::machine::Machine;
 use crate::state::{Direction, Pending};
-use obverse_isa::ErrorId;
+use obverse_isa::{ErrorId, Instr};
 use obverse_tape::record;
+use obverse_workcell::Workcell;
 
 impl Machine<'_> {
     /// Let the fault that stopped the act at hand be an error of the program, which is now pending.
     /// Whether it could be: nothing is done unless an act of the program itself was stopped going
-    /// forward, and the program declares the error.
-    pub fn raise(&mut self, error: ErrorId) -> bool {
-        let is_forward =
-            matches!(self.state.pending, Some(Pending { direction: Direction::Forward, .. }));
+    /// forward, the program declares the error, and the workcell lets a toggle be finished.
+    pub fn raise(&mut self, error: ErrorId, cell: &mut dyn Workcell) -> bool {
+        let Some(Pending { direction: Direction::Forward, level_before }) = self.state.pending
+        else {
+            return false;
+        };
         let is_declared = error.index() < self.program.module().errors.len();
-        if !is_forward || !is_declared || self.state.is_compensating() {
+        if !is_declared || self.state.is_compensating() || !self.toggle(level_before, cell) {
             return false;
         }
         self.executed = self.executed.saturating_add(1);
@@ -28,6 +32,17 @@ impl Machine<'_> {
             record::Fault { error: error.0, steps: self.state.steps() }.push(tape);
         }
         true
+    }
+
+    /// Finish the toggle at hand of an output that had this level, if it is one. Whether it is
+    /// done.
+    fn toggle(&self, level_before: Option<bool>, cell: &mut dyn Workcell) -> bool {
+        match (level_before, self.program.module().code[self.state.place.pc]) {
+            (Some(level), Instr::OutputToggle { bit, .. }) => {
+                cell.output(bit.0) != level || cell.set_output(bit.0, !level).is_ok()
+            }
+            _ => true,
+        }
     }
 
     /// Going back to where a fault became an error: it is pending no more.

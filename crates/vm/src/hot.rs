@@ -7,10 +7,15 @@
 
 use crate::class::{AfterForward, Always, Failure, Pure};
 use crate::ops::flow::{Course, Way};
+use crate::reversed::{Reversed, nearest};
 use crate::stop::TrapKind;
+use crate::update::Undo;
 use crate::values::{Values, Variables};
-use obverse_isa::{CounterId, Family, Instr, Label, for_each_op, op};
+use obverse_isa::{CounterId, Instr, Label, for_each_op, op};
 use obverse_tape::{Record, Recorder, Tape, record};
+
+/// The most words that a step of the loops records: a counter has three, and a landing a bit.
+pub(crate) const MAX_STEP_WORDS: u64 = 4;
 
 /// Why a loop returned.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -176,29 +181,34 @@ impl<R: Recorder> Forward<'_, '_, R> {
         }
         self.values.depth = 0;
         self.place.jump_forward(to);
-        if to <= from && (self.place.steps() >= self.limit || self.recorder.is_full()) {
+        if to <= from && self.place.steps() >= self.limit {
             return Some(Exit::Bound);
         }
         None
     }
 }
 
-/// Run the prefix of an asserted join that a jump lands on, which must say so. Takes the values by
-/// parts, so that those of the loop stay in registers.
+/// Run the prefix of an asserted join that a jump lands on, which must say so.
 #[inline(never)]
 #[cold]
-fn check_assertion(
-    code: &[Instr],
-    mut values: Values<'_>,
-    jump: usize,
-    join: usize,
-) -> Option<Exit> {
-    values.depth = 0;
-    let start = join - usize::from(code[join].prefix());
-    if let Err((at, kind)) = evaluate(code, start, join, &mut values) {
-        return Some(Exit::Trap(at, kind));
+fn check_assertion(code: &[Instr], values: Values<'_>, jump: usize, join: usize) -> Option<Exit> {
+    match operands(code, values, join) {
+        Ok((0, _)) => Some(Exit::Trap(jump, TrapKind::Assertion { by_jump: true })),
+        Ok(_) => None,
+        Err(exit) => Some(exit),
     }
-    (values.top() == 0).then_some(Exit::Trap(jump, TrapKind::Assertion { by_jump: true }))
+}
+
+/// Run the prefix of an effect: the newest operand, and how many there are. Takes the values by
+/// parts, so that those of the loops stay in registers.
+#[inline(never)]
+fn operands(code: &[Instr], mut values: Values<'_>, effect: usize) -> Result<(u64, u8), Exit> {
+    values.depth = 0;
+    let start = effect - usize::from(code[effect].prefix());
+    match evaluate(code, start, effect, &mut values) {
+        Ok(()) => Ok((values.top, values.depth)),
+        Err((at, kind)) => Err(Exit::Trap(at, kind)),
+    }
 }
 
 /// Run forward until something else is needed, a back edge passes `limit` steps, or, with `ONE`,
@@ -286,99 +296,6 @@ pub(crate) fn evaluate(
     Ok(())
 }
 
-/// How many statements that have nothing to do in reverse are passed over at once.
-const MAX_PASSED: usize = 8;
-
-/// Where a run in reverse stands when a statement has been undone: before which instruction, and
-/// how many steps earlier. In one word, which stays in a register.
-#[derive(Clone, Copy, Debug, Default)]
-pub(crate) struct WayBack(u64);
-
-impl WayBack {
-    fn new(pc: u32, steps: u32) -> Self {
-        Self(u64::from(steps) << 32 | u64::from(pc))
-    }
-
-    #[inline(always)]
-    fn pc(self) -> usize {
-        (self.0 & u64::from(u32::MAX)) as usize
-    }
-
-    #[inline(always)]
-    fn steps(self) -> i64 {
-        (self.0 >> 32).cast_signed()
-    }
-
-    /// From behind an effect to before its statement.
-    fn beside(code: &[Instr], effect: usize) -> Option<Self> {
-        let prefix = usize::from(code.get(effect)?.prefix());
-        let pc = u32::try_from(effect.checked_sub(prefix)?).ok()?;
-        Some(Self::new(pc, prefix as u32 + 1))
-    }
-
-    /// From behind a join to before the statement of its jump.
-    fn by_jump(code: &[Instr], join: usize) -> Option<Self> {
-        Self::beside(code, code[join].join_from()?.index())
-    }
-
-    fn from(code: &[Instr], effect: usize, by_jump: bool) -> Option<Self> {
-        if by_jump { Self::by_jump(code, effect) } else { Self::beside(code, effect) }
-    }
-
-    /// Over one more statement, if it has nothing to do in reverse.
-    fn further(self, code: &[Instr]) -> Option<Self> {
-        let before = self.pc().checked_sub(1)?;
-        let way = match code[before] {
-            Instr::Land { .. } => Self::by_jump(code, before)?,
-            instr if is_plain_jump(instr) => Self::beside(code, before)?,
-            _ => return None,
-        };
-        let steps = u32::try_from(self.steps() + way.steps()).ok()?;
-        Some(Self::new(u32::try_from(way.pc()).ok()?, steps))
-    }
-
-    fn each_further(self, code: &[Instr]) -> impl Iterator<Item = Self> {
-        std::iter::successors(Some(self), |way| way.further(code)).take(MAX_PASSED)
-    }
-}
-
-/// A jump that changes nothing but where the run is.
-fn is_plain_jump(instr: Instr) -> bool {
-    let is_loop = matches!(instr, Instr::ForEnter { .. } | Instr::ForNext { .. });
-    instr.info().family == Family::Flow && instr.jump_target().is_some() && !is_loop
-}
-
-/// An instruction as a run in reverse meets it, with the ways on from there: beside it, and by the
-/// jump that it names. They pass over the statements that have nothing to do in reverse: one
-/// load stands for a label, the prefix of a jump, and a dispatch for each statement passed over.
-#[derive(Clone, Copy, Debug)]
-#[repr(align(32))]
-pub(crate) struct Reversed {
-    instr: Instr,
-    beside: WayBack,
-    jump: WayBack,
-}
-
-/// The code as a run in reverse meets it.
-pub(crate) fn reversed(code: &[Instr]) -> Vec<Reversed> {
-    let whole = |at, by_jump| {
-        let first = WayBack::from(code, at, by_jump);
-        first.and_then(|way| way.each_further(code).last()).unwrap_or_default()
-    };
-    let each = code.iter().enumerate();
-    each.map(|(at, &instr)| Reversed { instr, beside: whole(at, false), jump: whole(at, true) })
-        .collect()
-}
-
-/// The way back that passes over no more than is needed to undo `steps`.
-#[inline(never)]
-#[cold]
-fn nearest(code: &[Instr], effect: usize, by_jump: bool, steps: i64) -> WayBack {
-    let mut ways =
-        WayBack::from(code, effect, by_jump).into_iter().flat_map(|way| way.each_further(code));
-    ways.find(|way| way.steps() >= steps).unwrap_or_default()
-}
-
 struct Reverse<'r, 'a> {
     code: &'r [Instr],
     values: Values<'a>,
@@ -391,7 +308,10 @@ impl Reverse<'_, '_> {
     fn undo_jump(&mut self, join: Instr, from: Label) -> Result<(), Exit> {
         match join {
             Instr::ForTop { counter, .. } => self.uncount(from.index(), counter),
-            Instr::ForExit { .. } => self.uncount_none(from.index()),
+            Instr::ForExit { .. } => {
+                let values = &mut self.values;
+                uncount_none(self.code, borrow!(values), self.tape, from.index())
+            }
             // Nothing is lost by any other jump.
             _ => Ok(()),
         }
@@ -405,44 +325,38 @@ impl Reverse<'_, '_> {
         let next = op::ForNext { counter, target: Label(0) };
         next.reverse(&mut course).map_err(|failure| trap(from, failure))
     }
+}
 
-    /// Undo a `for.enter` that had nothing to count.
-    #[inline(never)]
-    #[cold]
-    fn uncount_none(&mut self, from: usize) -> Result<(), Exit> {
-        let Instr::ForEnter { prefix, counter, exit } = self.code[from] else { return Ok(()) };
-        let saved = record::Counter::pop(self.tape).ok_or(Exit::Trap(from, TrapKind::TapeEmpty))?;
-        let mut variables = Variables(&mut self.values);
-        let mut course = Course { variables: &mut variables, way: Way::Beside };
-        let enter = op::ForEnter { prefix, counter, exit };
-        enter.reverse(&mut course, &saved).map_err(|failure| trap(from, failure))
-    }
+/// Undo a `for.enter` that had nothing to count. Takes the values by parts, so that those of the
+/// loop stay in registers.
+#[inline(never)]
+#[cold]
+fn uncount_none(
+    code: &[Instr],
+    mut values: Values<'_>,
+    tape: &mut Tape,
+    from: usize,
+) -> Result<(), Exit> {
+    let Instr::ForEnter { prefix, counter, exit } = code[from] else { return Ok(()) };
+    let saved = record::Counter::pop(tape).ok_or(Exit::Trap(from, TrapKind::TapeEmpty))?;
+    let mut variables = Variables(&mut values);
+    let mut course = Course { variables: &mut variables, way: Way::Beside };
+    let enter = op::ForEnter { prefix, counter, exit };
+    enter.reverse(&mut course, &saved).map_err(|failure| trap(from, failure))
 }
 
 /// Reverse: one opcode, by family and class, as whether a jump was undone. `$at` is the
-/// instruction, `$prefix` its prefix. What needs its operands dispatches from its prefix
-/// on, forward, and comes back with them.
+/// instruction, `$prefix` its prefix.
 macro_rules! reverse_arm {
-    ($op:expr, $run:ident, $instr:ident, $at:ident, $prefix:expr, $is_loaded:ident, $out:lifetime
-        value always) => {{
-        if !$is_loaded {
-            break $out Exit::Slow;
-        }
-        if let Err(kind) = $op.run(&mut $run.values) {
-            break $out Exit::Trap($at, kind);
-        }
-        $at += 1;
-        continue;
-    }};
-    ($op:expr, $run:ident, $instr:ident, $at:ident, $prefix:expr, $is_loaded:ident, $out:lifetime
+    ($op:expr, $run:ident, $instr:ident, $at:ident, $prefix:expr, $out:lifetime
         variable always) => {{
-        load_operands!($run, $at, $prefix, $is_loaded);
+        load_operands!($run, $at, $prefix, $out);
         if let Err(failure) = $op.reverse(&mut Variables(&mut $run.values)) {
             break $out trap($at, failure);
         }
         false
     }};
-    ($op:expr, $run:ident, $instr:ident, $at:ident, $prefix:expr, $is_loaded:ident, $out:lifetime
+    ($op:expr, $run:ident, $instr:ident, $at:ident, $prefix:expr, $out:lifetime
         variable after_forward $record:ident) => {{
         let Some(saved) = record::$record::pop($run.tape) else {
             break $out Exit::Trap($at, TrapKind::TapeEmpty);
@@ -452,10 +366,10 @@ macro_rules! reverse_arm {
         }
         false
     }};
-    ($op:expr, $run:ident, $instr:ident, $at:ident, $prefix:expr, $is_loaded:ident, $out:lifetime
+    ($op:expr, $run:ident, $instr:ident, $at:ident, $prefix:expr, $out:lifetime
         flow always) => {{
         if matches!($instr, Instr::JoinAssert { .. }) {
-            load_operands!($run, $at, $prefix, $is_loaded);
+            load_operands!($run, $at, $prefix, $out);
         }
         let mut variables = Variables(&mut $run.values);
         let mut course = Course { variables: &mut variables, way: Way::Beside };
@@ -465,7 +379,7 @@ macro_rules! reverse_arm {
         let way = course.way;
         retrace!($run, $instr, way, $out)
     }};
-    ($op:expr, $run:ident, $instr:ident, $at:ident, $prefix:expr, $is_loaded:ident, $out:lifetime
+    ($op:expr, $run:ident, $instr:ident, $at:ident, $prefix:expr, $out:lifetime
         flow after_forward $record:ident) => {{
         let Some(saved) = record::$record::pop($run.tape) else {
             break $out Exit::Trap($at, TrapKind::TapeEmpty);
@@ -478,21 +392,22 @@ macro_rules! reverse_arm {
         let way = course.way;
         retrace!($run, $instr, way, $out)
     }};
-    ($op:expr, $run:ident, $instr:ident, $at:ident, $prefix:expr, $is_loaded:ident, $out:lifetime
+    ($op:expr, $run:ident, $instr:ident, $at:ident, $prefix:expr, $out:lifetime
         $($other:tt)*) => {{
         let _ = $op;
         break $out Exit::Slow;
     }};
 }
 
-/// Dispatch from the prefix of an effect on, unless that is done.
+/// Have the operands of an effect there.
 macro_rules! load_operands {
-    ($run:ident, $at:ident, $prefix:expr, $is_loaded:ident) => {
-        if $prefix > 0 && !$is_loaded {
-            $is_loaded = true;
-            $run.values.depth = 0;
-            $at -= $prefix;
-            continue;
+    ($run:ident, $at:ident, $prefix:expr, $out:lifetime) => {
+        if $prefix > 0 {
+            let values = &mut $run.values;
+            match operands($run.code, borrow!(values), $at) {
+                Ok((top, depth)) => ($run.values.top, $run.values.depth) = (top, depth),
+                Err(exit) => break $out exit,
+            }
         }
     };
 }
@@ -523,7 +438,8 @@ pub(crate) fn reverse<const ONE: bool>(
     tape: &mut Tape,
 ) -> Exit {
     let mut run = Reverse { code, values: borrow!(values), tape };
-    let mut pc = place.pc;
+    // Before the first instruction the index wraps, and is none of the code's.
+    let mut next = (place.pc as u32).wrapping_sub(1);
     // A count that went below nothing, as one from a tape that was tampered with can, is below
     // every floor.
     let mut left = place.steps().wrapping_sub(floor).cast_signed();
@@ -534,42 +450,41 @@ pub(crate) fn reverse<const ONE: bool>(
             [$($picture:tt)*] $class:ident $(($payload:tt))? $family:ident;
         )*) => {
             'out: loop {
-                // Before the first instruction the index wraps, and is none of the code's.
-                let mut at = pc.wrapping_sub(1);
-                let mut is_loaded = false;
-                let (way, by_jump) = loop {
-                    let Some(&Reversed { instr, beside, jump }) = reversed.get(at) else {
-                        break 'out Exit::Slow;
-                    };
-                    let by_jump = match instr {
+                let at = next as usize;
+                let Some(row) = reversed.get(at) else { break Exit::Slow };
+                let by_jump = match row.undo {
+                    Undo::Update(update) => {
+                        update.undo(&mut run.values);
+                        false
+                    }
+                    Undo::Instr(instr) => match instr {
                         $(Instr::$ident { $($field,)* } => {
                             reverse_arm!(
                                 op::$ident { $($field,)* },
                                 run,
                                 instr,
                                 at,
-                                usize::from(0 $(+ obverse_isa::Operand::as_prefix($field))*),
-                                is_loaded,
+                                0 $(+ obverse_isa::Operand::as_prefix($field))*,
                                 'out $family $class $($payload)?
                             )
                         })*
-                    };
-                    break if by_jump { (jump, true) } else { (beside, false) };
+                    }
                 };
+                let way = if by_jump { row.jump } else { row.beside };
                 if ONE || way.steps() >= left {
                     let way = nearest(code, at, by_jump, if ONE { 0 } else { left });
-                    pc = way.pc();
+                    next = way.next();
                     left = left.wrapping_sub(way.steps());
                     break if ONE { Exit::One } else { Exit::Bound };
                 }
-                pc = way.pc();
+                next = way.next();
                 left -= way.steps();
             }
         };
     }
     let exit = for_each_op!(dispatch);
     let steps = floor.wrapping_add(left.cast_unsigned());
-    place.stand_at(pc, steps);
+    place.stand_at(next.wrapping_add(1) as usize, steps);
     values.depth = 0;
     exit
 }

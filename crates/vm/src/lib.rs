@@ -9,7 +9,8 @@
 //!
 //! Reading order: [`class`], the traits that every effect implements; [`values`], what a pure
 //! instruction sees; `ops`, every opcode by family, forward and reverse side by side; `state`;
-//! `hot`, the loops over what needs no workcell; `step`, everything else; [`machine`], the whole.
+//! `hot`, the loops over what needs no workcell, with `reversed` and `update`, the code as a run in
+//! reverse meets it; `step`, everything else; [`machine`], the whole.
 //! The machine knows nothing of source languages, of how a workcell does what it is told, or of
 //! when going back is wise.
 
@@ -23,11 +24,13 @@ pub mod machine;
 pub mod observe;
 mod ops;
 pub mod pure;
+mod reversed;
 mod snapshot;
 pub mod state;
 mod step;
 pub mod stop;
 mod task;
+mod update;
 pub mod values;
 mod written;
 

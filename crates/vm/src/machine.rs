@@ -1,9 +1,10 @@
 //! The machine: a verified program, its state, and its tape, run in either direction.
 
 use crate::alter::Alteration;
-use crate::hot::{self, Exit, Reversed};
+use crate::hot::{self, Exit, MAX_STEP_WORDS};
 use crate::link::{LinkError, Links};
 use crate::observe::Observer;
+use crate::reversed::{Reversed, reversed};
 use crate::state::{Direction, Frame, State};
 use crate::step::{Host, Outcome};
 use crate::stop::Stop;
@@ -118,7 +119,7 @@ impl<'p> Machine<'p> {
         Ok(Self {
             program,
             constants: module.constants.iter().map(|constant| constant.bits()).collect(),
-            reversed: hot::reversed(&module.code),
+            reversed: reversed(&module.code),
             branches: task::branches(&module.code),
             links,
             state,
@@ -319,7 +320,6 @@ impl<'p> Machine<'p> {
 
     fn check_tape(&self) -> Outcome {
         use crate::stop::{Trap, TrapKind};
-        use obverse_tape::Recorder;
         match &self.tape {
             Some(tape) if tape.is_full() => {
                 Err(Stop::Trap(Trap { pc: self.state.pc(), kind: TrapKind::TapeFull }))
@@ -341,7 +341,12 @@ impl<'p> Machine<'p> {
         let mut place = self.state.place;
         let mut values = values!(self);
         let exit = match &mut self.tape {
-            Some(tape) => hot::forward::<_, ONE>(code, &mut values, &mut place, limit, tape),
+            Some(tape) => {
+                // Until then it cannot become full, so that the loop need not ask.
+                let room = place.steps().saturating_add(tape.room_words() / MAX_STEP_WORDS);
+                let limit = limit.min(room);
+                hot::forward::<_, ONE>(code, &mut values, &mut place, limit, tape)
+            }
             None => hot::forward::<_, ONE>(code, &mut values, &mut place, limit, &mut NoTape),
         };
         let depth = values.depth;

@@ -49,6 +49,16 @@ pub enum Fault {
         /// Where along the path, 0 to 1.
         fraction: f64,
     },
+    /// Everything in the cell was stopped on the way; the arm holds its position.
+    EmergencyStop {
+        /// Where along the path, 0 to 1.
+        fraction: f64,
+    },
+    /// The motion ended before its goal without a stop: the next command may follow at once.
+    StoppedShort {
+        /// Where along the path, 0 to 1.
+        fraction: f64,
+    },
     /// A command was refused since the arm is stopped and has not been released.
     Stopped,
     /// A number in a command is not one the workcell can act on.
@@ -78,6 +88,10 @@ pub enum FaultKind {
     ForceLimit,
     /// See [`Fault::ProtectiveStop`].
     ProtectiveStop,
+    /// See [`Fault::EmergencyStop`].
+    EmergencyStop,
+    /// See [`Fault::StoppedShort`].
+    StoppedShort,
     /// See [`Fault::Stopped`].
     Stopped,
     /// See [`Fault::BadCommand`].
@@ -97,6 +111,8 @@ impl FaultKind {
             Self::Collision => "collision",
             Self::ForceLimit => "force_limit",
             Self::ProtectiveStop => "protective_stop",
+            Self::EmergencyStop => "emergency_stop",
+            Self::StoppedShort => "stopped_short",
             Self::Stopped => "stopped",
             Self::BadCommand => "bad_command",
             Self::Missing => "missing",
@@ -115,6 +131,8 @@ impl Fault {
             Self::Collision { .. } => FaultKind::Collision,
             Self::ForceLimit { .. } => FaultKind::ForceLimit,
             Self::ProtectiveStop { .. } => FaultKind::ProtectiveStop,
+            Self::EmergencyStop { .. } => FaultKind::EmergencyStop,
+            Self::StoppedShort { .. } => FaultKind::StoppedShort,
             Self::Stopped => FaultKind::Stopped,
             Self::BadCommand { .. } => FaultKind::BadCommand,
             Self::Missing { .. } => FaultKind::Missing,
@@ -152,6 +170,12 @@ impl fmt::Display for Fault {
             }
             Self::ProtectiveStop { fraction } => {
                 write!(f, "protective stop at {:.0} % of the way", fraction * 1e2)
+            }
+            Self::EmergencyStop { fraction } => {
+                write!(f, "emergency stop at {:.0} % of the way", fraction * 1e2)
+            }
+            Self::StoppedShort { fraction } => {
+                write!(f, "the motion stopped short at {:.0} % of the way", fraction * 1e2)
             }
             Self::Stopped => write!(f, "the arm is stopped and waits to be released"),
             Self::BadCommand { why } => write!(f, "the command makes no sense: {why}"),

@@ -49,6 +49,21 @@ pub enum Goal {
         /// The frame of the offset.
         frame: Frame,
     },
+    /// The tool centre point turned, and moved on at the same time, about an axis through where it
+    /// is at `from`: what drives a screw or locks a bayonet. Whole turns count. By nothing it leads
+    /// back to `from`, bit for bit, as often around as it was turned.
+    Turned {
+        /// The configuration that the turn starts from.
+        from: JointConfiguration,
+        /// In radians, by the right hand about the axis.
+        angle_rad: f64,
+        /// How far along the axis meanwhile, in metres.
+        advance_m: f64,
+        /// The axis.
+        axis: Axis,
+        /// The frame of the axis, taken at `from`.
+        frame: Frame,
+    },
 }
 
 /// The way of a motion.

@@ -70,10 +70,14 @@ impl<'s> Checker<'s> {
         let hoists = self.frame.take_hoists();
         let named = self.frame.named;
         let then = self.block(then);
-        self.frame.named = named;
+        let after_then = std::mem::replace(&mut self.frame.named, named);
         let otherwise = otherwise.map(|block| self.block(block));
-        self.lose_position("two ways join after this", header);
         let else_falls = otherwise.as_ref().is_none_or(|block| block.falls_through);
+        match (then.falls_through, else_falls) {
+            (true, true) => self.join_position(after_then, header),
+            (true, false) => self.frame.named = after_then,
+            (false, _) => {}
+        }
         let ending_when = ending_when.map(|written| {
             let assertion = self.assertion(written, "`ending when`");
             if !then.falls_through || !else_falls {
@@ -140,11 +144,16 @@ impl<'s> Checker<'s> {
 
     /// The body of a loop, and whether a `break` leaves it.
     fn body(&mut self, body: &ast::Block<'s>, header: Span) -> (Block, bool) {
-        self.lose_position("a loop comes round to here", header);
+        let moves = self.movers.may_move(body);
+        if moves {
+            self.lose_position("a loop comes round to here", header);
+        }
         self.frame.around.push(Around::Loop { breaks: false });
         let block = self.block(body);
         let around = self.frame.around.pop();
-        self.lose_position("a loop ends here", header);
+        if moves {
+            self.lose_position("a loop ends here", header);
+        }
         (block, matches!(around, Some(Around::Loop { breaks: true })))
     }
 

@@ -5,7 +5,7 @@
 //! branches command or assign is another matter, which calls are needed for.
 
 use super::Checker;
-use super::frame::Around;
+use super::frame::{Around, NamedPosition};
 use super::statement::Checked;
 use crate::tree::{Block, StatementKind};
 use obverse_isa::LocalId;
@@ -24,6 +24,7 @@ impl<'s> Checker<'s> {
         let header = self.header(start, first.span);
         self.check_branches(written, header);
         let named = self.frame.named;
+        let mut after = named;
         let (counters, peak) = (self.frame.counters, self.frame.counter_peak);
         self.frame.counter_peak = counters;
         let mut free: Vec<LocalId> = Vec::new();
@@ -31,6 +32,13 @@ impl<'s> Checker<'s> {
         for block in written {
             self.frame.named = named;
             branches.push(self.fork_branch(block, header));
+            // The arm is one branch's alone.
+            if self.frame.named != named {
+                after = match after == named {
+                    true => self.frame.named,
+                    false => NamedPosition::Lost("the branches come together after this", header),
+                };
+            }
             free.append(&mut self.frame.free);
             self.frame.counters = self.frame.counter_peak;
         }
@@ -38,7 +46,7 @@ impl<'s> Checker<'s> {
         self.frame.free.sort_unstable();
         self.frame.counters = counters;
         self.frame.counter_peak = self.frame.counter_peak.max(peak);
-        self.lose_position("the branches come together after this", header);
+        self.frame.named = after;
         let falls_through = branches.iter().all(|branch| branch.falls_through);
         Some((self.done(StatementKind::Fork(branches), header), falls_through))
     }

@@ -33,7 +33,7 @@ pub(crate) enum Around {
 }
 
 /// The position that the program named last.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum NamedPosition {
     /// This configuration.
     Known(JointsId),

@@ -19,6 +19,7 @@ mod program;
 mod reverse;
 mod signals;
 mod statement;
+mod still;
 mod unused;
 
 use crate::faults::NamedFault;
@@ -36,6 +37,7 @@ use obverse_syntax::diagnostic::Diagnostic;
 use obverse_syntax::sources::Sources;
 use obverse_syntax::span::Span;
 use std::collections::{BTreeSet, HashMap};
+use still::Movers;
 
 pub(crate) use program::check;
 
@@ -79,6 +81,7 @@ struct Checker<'s> {
     faults: HashMap<FaultWord, Span>,
     named_faults: Vec<NamedFault>,
     keyframes: KeyframeFlow,
+    movers: Movers<'s>,
     frame: FrameScope,
     /// The kinds of thing there are too many of, so that each is reported once.
     full: Vec<&'static str>,

@@ -3,6 +3,7 @@
 
 use super::frame::FrameScope;
 use super::names::{Found, Meaning, Names};
+use super::still::Movers;
 use super::{Checker, Interned, Signature};
 use crate::faults;
 use crate::keyframes::KeyframeFlow;
@@ -76,6 +77,7 @@ impl<'s> Checker<'s> {
             named_faults: Vec::new(),
             faults: HashMap::new(),
             keyframes: KeyframeFlow::default(),
+            movers: Movers::default(),
             frame: FrameScope::new(FunctionId(0), "", Span::default()),
             full: Vec::new(),
         }
@@ -232,6 +234,7 @@ impl<'s> Checker<'s> {
     }
 
     fn check_bodies(&mut self, program: &Program<'s>) {
+        self.movers = Movers::of(program, &self.module.errors);
         let declared = u16::try_from(self.signatures.len()).unwrap_or(u16::MAX);
         let mut ids = (1..declared).map(FunctionId);
         for item in &program.items {

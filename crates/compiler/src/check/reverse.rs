@@ -21,7 +21,9 @@ impl<'s> Checker<'s> {
     /// whether what follows it is reached.
     pub(super) fn kept(&mut self, block: &ast::Block<'s>, span: Span) -> (FunctionId, bool) {
         let named = self.header(span.start, block.span);
-        self.lose_position("going back, this block begins where it ended", named);
+        if self.movers.may_move(block) {
+            self.lose_position("going back, this block begins where it ended", named);
+        }
         let id = self.new_function(named);
         let name = self.name_in_reverse();
         let locals_before = self.frame.layout.locals.len();

@@ -94,6 +94,13 @@ impl<'s> Checker<'s> {
         self.frame.named = NamedPosition::Lost(why, span);
     }
 
+    /// Two ways come together after this, of which the other one ends here.
+    pub(super) fn join_position(&mut self, other: NamedPosition, span: Span) {
+        if self.frame.named != other {
+            self.lose_position("two ways join after this", span);
+        }
+    }
+
     fn advance(&mut self, name: Name<'s>, span: Span) -> Option<StatementKind> {
         let is_guarded = |meaning| matches!(meaning, Meaning::Guarded(_));
         self.lose_position("this advanced move ends where it ends", span);
@@ -111,7 +118,9 @@ impl<'s> Checker<'s> {
         arguments: &[ast::Expression<'s>],
         span: Span,
     ) -> Option<StatementKind> {
-        self.lose_position("what is called here may move the arm", span);
+        if self.movers.may_move_in(name.value) {
+            self.lose_position("what is called here may move the arm", span);
+        }
         let Some(callee) = self.callee(name) else {
             arguments.iter().for_each(|argument| _ = self.any_value(argument));
             return None;
@@ -194,8 +203,12 @@ impl<'s> Checker<'s> {
         let came = self.temporary(Type::Bool, header);
         let hoists = self.frame.take_hoists();
         let otherwise = otherwise.map(|block| {
+            let named = self.frame.named;
             let block = self.block(block);
-            self.lose_position("two ways join after this", header);
+            match block.falls_through {
+                true => self.join_position(named, header),
+                false => self.frame.named = named,
+            }
             block
         });
         let kind = StatementKind::WaitInput { bit, level: level(high), timeout, came, otherwise };
@@ -509,7 +522,9 @@ impl<'s> Checker<'s> {
         self.frame.around.push(Around::Reversed(header));
         let checked = self.block(block);
         self.frame.around.pop();
-        self.lose_position("this block has a reverse of its own", header);
+        if self.movers.may_move(block) {
+            self.lose_position("this block has a reverse of its own", header);
+        }
         checked
     }
 
@@ -531,7 +546,9 @@ impl<'s> Checker<'s> {
     }
 
     fn throw(&mut self, name: Name<'s>, span: Span) -> Checked {
-        self.lose_position("recovering from this error may move the arm", span);
+        if self.movers.may_move_after(name.value) {
+            self.lose_position("recovering from this error may move the arm", span);
+        }
         let is_error = |meaning| matches!(meaning, Meaning::Error(_));
         let Meaning::Error(id) = self.resolve(name, "an error", is_error)? else { return None };
         let goes_on = goes_on_after_throw(self.module.errors.get(id.index())?);

@@ -21,15 +21,9 @@ impl Checker<'_> {
         for symbol in self.names.all() {
             let name = symbol.name.value;
             let is_main = matches!(symbol.meaning, Meaning::Sequence(id) if Some(id) == main);
-            // The counter of a loop counts, whether it is read or not; what the workcell has is not
-            // the program's to leave out; and what a file offers serves other programs as well.
-            let is_meant = matches!(
-                symbol.meaning,
-                Meaning::Counter(_)
-                    | Meaning::CountDown(_)
-                    | Meaning::Output(_)
-                    | Meaning::Input(_)
-            );
+            // The counter of a loop counts, whether it is read or not; and what a file offers
+            // serves other programs as well.
+            let is_meant = matches!(symbol.meaning, Meaning::Counter(_) | Meaning::CountDown(_));
             let is_offered = symbol.meaning.is_declared() && !self.is_own(symbol.name.span);
             if symbol.is_used || is_main || is_meant || is_offered {
                 continue;

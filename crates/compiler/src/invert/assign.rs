@@ -113,7 +113,8 @@ impl<'p> Inverter<'p> {
         ));
     }
 
-    /// `x += e` is undone by `x -= e`; `x = 5` by what `x` was, if that is known.
+    /// `n += e` is undone by `n -= e`, where `n` is an integer; `x = 5` by what `x` was, if that is
+    /// known.
     pub(super) fn assign(
         &mut self,
         name: Name<'p>,
@@ -136,6 +137,14 @@ impl<'p> Inverter<'p> {
             AssignOperator::Add => AssignOperator::Subtract,
             AssignOperator::Subtract => AssignOperator::Add,
         };
+        if !self.plan.checked.is_integer(self.name, name.value) {
+            let message = "an update of a real has no exact inverse";
+            let why = format!("`{}` would come back rounded", name.value);
+            self.refuse(refusal(span, message, &why).with_help(
+                "keep an `int` counter and multiply: `n += 1`, and `real(n) * 0.2 mm` where it \
+                 is needed",
+            ));
+        }
         if walk::names_of(value).contains(&name.value) {
             let message = "a variable that is updated by its own value has no inverse";
             let why = format!("once `{}` has changed, this is no longer known", name.value);

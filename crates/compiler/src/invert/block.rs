@@ -32,7 +32,7 @@ pub(super) struct Inverter<'p> {
     /// What is done by statements that do not go back to former levels, and where.
     pub(super) opaque: Vec<(Effect<'p>, Span)>,
     /// The sequence in hand.
-    name: &'p str,
+    pub(super) name: &'p str,
     /// Its parameters.
     pub(super) parameters: Vec<&'p str>,
     /// The call that the sequence in hand begins with, whose first move is its own.
@@ -293,6 +293,9 @@ impl<'p> Inverter<'p> {
             }
             StatementKind::KeepInReverse(block) => one(self.kept(block, span)),
             StatementKind::Fork(branches) => {
+                if let Some(refused) = self.plan.checked.refusal_of_fork(span) {
+                    self.refuse(refused);
+                }
                 one(StatementKind::Fork(branches.iter().map(|branch| self.block(branch)).collect()))
             }
             StatementKind::Variable(_) | StatementKind::Allow(_) => Vec::new(),

@@ -11,6 +11,7 @@
 
 mod assign;
 mod block;
+mod checked;
 mod control;
 mod effect;
 mod head;
@@ -23,15 +24,17 @@ mod refusal;
 mod reversal;
 mod walk;
 
+use crate::allow::{self, Allows};
 use crate::load::{self, Loaded, Loader};
-use crate::{allow, compile, compile_loaded, merge};
+use crate::report::Reports;
+use crate::{compile, compile_loaded, compile_tree, merge};
+use checked::Checked;
 use obverse_syntax::ast::{Item, Program};
-use obverse_syntax::codes::Code;
 use obverse_syntax::diagnostic::{Diagnostic, Severity};
 use obverse_syntax::format::print;
 use obverse_syntax::sources::Sources;
-use obverse_syntax::span::Span;
 use program::Plan;
+use refusal::refusal;
 
 /// The inverse of a sequence.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -52,6 +55,30 @@ pub enum NoInverse {
     Diagnosed(Vec<Diagnostic>),
     /// The program has no sequence or action of this name; one that was perhaps meant.
     UnknownSequence(Option<String>),
+    /// What has this name is done by a statement, and has its reverse with it.
+    OtherKind(OtherKind),
+}
+
+/// What is no sequence, and is done by a statement.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct OtherKind {
+    /// What it is: `an I/O operation`.
+    pub kind: &'static str,
+    /// How it is done: `io close`.
+    pub statement: String,
+}
+
+impl OtherKind {
+    fn of(program: &Program<'_>, name: &str) -> Option<Self> {
+        let of = |kind, word: &str| Some(Self { kind, statement: format!("{word} {name}") });
+        program.items.iter().find_map(|item| match item {
+            Item::Io(io) if io.name.value == name => of("an I/O operation", "io"),
+            Item::AdvancedMove(guarded) if guarded.name.value == name => {
+                of("an advanced move", "advance")
+            }
+            _ => None,
+        })
+    }
 }
 
 /// The inverse of a sequence or action, as a program of one file. To invert it again gives a
@@ -91,44 +118,65 @@ fn invert_loaded(loaded: &Loaded, name: &str, sequence: &str) -> Result<Inverse,
             path.value = cell;
         }
     }
-    let Some(place) = place_of(&program, sequence) else {
-        let names = program.items.iter().filter_map(|item| match item {
-            Item::Sequence(sequence) => Some(sequence.name.value),
-            _ => None,
-        });
+    if !program.items.iter().any(|item| name_of(item) == Some(sequence)) {
+        if let Some(other) = OtherKind::of(&program, sequence) {
+            return Err(NoInverse::OtherKind(other));
+        }
+        let names = program.items.iter().filter_map(name_of);
         let meant = obverse_syntax::nearest(sequence, names);
         return Err(NoInverse::UnknownSequence(meant.map(str::to_owned)));
-    };
-    let inverse = inverted(&program, sequence)?;
-    let found = compile(name, &inverse.text);
-    match found.module {
-        Some(_) => Ok(inverse),
-        None => Err(NoInverse::Diagnosed(vec![does_not_compile(place, &found.diagnostics)])),
+    }
+    let checked = Checked::of(&loaded.sources, &program, &module);
+    let plan = Plan::of(&program, checked, sequence).map_err(NoInverse::Diagnosed)?;
+    let (inverse, is_begun_with) = plan.inverse().map_err(NoInverse::Diagnosed)?;
+    let text = print(&inverse);
+    if compile(name, &text).module.is_none() {
+        return Err(NoInverse::Diagnosed(does_not_compile(&loaded.sources, &inverse, sequence)));
+    }
+    Ok(Inverse { text, name: program::inverse_name(sequence), is_begun_with })
+}
+
+/// The name of a sequence.
+fn name_of<'s>(item: &Item<'s>) -> Option<&'s str> {
+    match item {
+        Item::Sequence(sequence) => Some(sequence.name.value),
+        _ => None,
     }
 }
 
-fn place_of(program: &Program<'_>, name: &str) -> Option<Span> {
-    program.items.iter().find_map(|item| match item {
+/// What is said where an inverse keeps all rules of inversion and yet is no program. Its statements
+/// stand where those stand that they are the inverses of, and so does what is wrong with them.
+fn does_not_compile(sources: &Sources, inverse: &Program<'_>, name: &str) -> Vec<Diagnostic> {
+    let reports = Reports::new(true, Allows::default());
+    let (_, reports) = compile_tree(sources, inverse, reports);
+    let found = reports.into_diagnostics().into_iter();
+    let errors = found.filter(|found| found.severity == Severity::Error);
+    let refused = |found: Diagnostic| {
+        let (span, why) = (found.primary.span, format!("in the inverse, {}", found.message));
+        let message = "what takes this back does not compile";
+        let refused = refusal(span, message, &why).with_help(
+            "write it in other words, or write its inverse by hand: `do { .. } in reverse { .. }`",
+        );
+        let labels = found.labels.into_iter();
+        labels.fold(refused, |refused, label| {
+            refused.with_label(label.span, format!("in the inverse, {}", label.text))
+        })
+    };
+    let refused: Vec<Diagnostic> = errors.map(refused).collect();
+    match refused.is_empty() {
+        true => vec![cannot_be_written(inverse, name)],
+        false => refused,
+    }
+}
+
+/// What is said of an inverse that is a program only as long as nobody writes it down.
+fn cannot_be_written(inverse: &Program<'_>, name: &str) -> Diagnostic {
+    let name = program::inverse_name(name);
+    let place = inverse.items.iter().find_map(|item| match item {
         Item::Sequence(sequence) if sequence.name.value == name => Some(sequence.name.span),
         _ => None,
-    })
-}
-
-fn inverted(program: &Program<'_>, root: &str) -> Result<Inverse, NoInverse> {
-    let plan = Plan::of(program, root).map_err(NoInverse::Diagnosed)?;
-    let (inverse, is_begun_with) = plan.inverse().map_err(NoInverse::Diagnosed)?;
-    let name = program::inverse_name(root);
-    Ok(Inverse { text: print(&inverse), name, is_begun_with })
-}
-
-/// What is said where an inverse keeps all rules of inversion and yet is no program: it needs a
-/// name where that cannot be seen, for example.
-fn does_not_compile(place: Span, found: &[Diagnostic]) -> Diagnostic {
-    let message = "what would be the inverse of this sequence does not compile";
-    let diagnostic = Diagnostic::error(Code::NotInvertible, place, message, "has no inverse");
-    let error = found.iter().find(|found| found.severity == Severity::Error);
-    match error {
-        Some(error) => diagnostic.with_note(format!("in the inverse {}", error.message)),
-        None => diagnostic,
-    }
+    });
+    let message = "the inverse of this sequence is too large";
+    let why = "its blocks are too deep in one another, or its conditions too long";
+    refusal(place.unwrap_or_default(), message, why).with_help("divide it into several sequences")
 }

@@ -2,13 +2,15 @@
 //! each begins, and what the inverse needs of the rest.
 
 use super::block::Inverter;
+use super::checked::Checked;
 use super::effect::{Declared, Effect, Facts, Key, Value, constant};
 use super::refusal::refusal;
 use super::walk;
 use obverse_syntax::ast::{
-    Block, IoOperation, Item, Name, Program, Sequence, Signal, SignalKind, Statement,
+    Allow, Block, IoOperation, Item, Name, Program, Sequence, Signal, SignalKind, Statement,
     StatementKind, VariableDeclaration,
 };
+use obverse_syntax::codes::Code;
 use obverse_syntax::diagnostic::Diagnostic;
 use obverse_syntax::format::print;
 use obverse_syntax::span::{Span, Spanned};
@@ -20,6 +22,7 @@ const SUFFIX: &str = "_inverse";
 /// What is to be inverted, and what is known of the program.
 pub(super) struct Plan<'s> {
     program: &'s Program<'s>,
+    pub(super) checked: Checked<'s>,
     pub(super) root: &'s str,
     /// What is inverted, callees before callers.
     order: Vec<&'s Sequence<'s>>,
@@ -64,9 +67,14 @@ impl<'s> Declared<'s> for Plan<'s> {
 
 impl<'s> Plan<'s> {
     /// What it takes to invert a sequence of a program.
-    pub(super) fn of(program: &'s Program<'s>, root: &str) -> Result<Self, Vec<Diagnostic>> {
+    pub(super) fn of(
+        program: &'s Program<'s>,
+        checked: Checked<'s>,
+        root: &str,
+    ) -> Result<Self, Vec<Diagnostic>> {
         let mut plan = Self {
             program,
+            checked,
             root: "",
             order: Vec::new(),
             sequences: HashMap::new(),
@@ -357,7 +365,7 @@ impl<'s> Plan<'s> {
                     let name = one.name.value;
                     (io.made.remove(name).map(Item::Io), io.kept.contains(name))
                 }
-                Item::Cell(_) | Item::Signal(_) => (None, true),
+                Item::Cell(_) => (None, true),
                 _ => (None, false),
             };
             let item = match item {
@@ -426,6 +434,9 @@ impl<'s> Plan<'s> {
         // Nobody knows the arguments, or with which values the variables begin.
         let is_called = root.parameters.is_empty() && !is_changing;
         let statements = if is_called { vec![Statement { kind: call, span }] } else { Vec::new() };
+        if !is_called {
+            program.items.insert(0, Item::Allow(unused_here(span)));
+        }
         program.items.push(Item::Sequence(Sequence {
             name: Spanned::new("main", span),
             is_action: false,
@@ -434,6 +445,17 @@ impl<'s> Plan<'s> {
             span,
         }));
         is_called
+    }
+}
+
+/// What is said of an inverse that the program around it does not call.
+fn unused_here<'p>(span: Span) -> Allow<'p> {
+    let reason = "who calls the inverse uses it, with what it needs";
+    Allow {
+        code: Spanned::new(Code::Unused.as_str(), span),
+        in_file: true,
+        reason: Spanned::new(reason, span),
+        span,
     }
 }
 

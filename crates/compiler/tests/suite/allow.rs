@@ -96,3 +96,18 @@ fn it_is_nothing_in_the_module() {
     assert_eq!(plain.code, allowed.code);
     assert_eq!(plain.constants, allowed.constants);
 }
+
+#[test]
+fn what_is_kept_keeps_what_it_runs() {
+    let program = |before: &str| {
+        format!(
+            "{before}\nsequence spare {{ call step io lamp }}\nsequence step {{ io lamp }}\n\
+             io lamp {{ set 2 high }}\nsequence main {{ wait 1 s }}\n"
+        )
+    };
+    check(
+        &program("// nothing is said of it"),
+        &[r#"W0001 2:10 "spare""#, r#"W0011 3:10 "step""#, r#"W0011 4:4 "lamp""#],
+    );
+    check(&program("allow W0001 \"for the fitter\""), &[]);
+}

@@ -488,6 +488,7 @@ fn warnings() {
         r#"
 joints unused = [0, 0, 0, 0, 0, 0] deg
 joints _spare = [0, 0, 0, 0, 0, 0] deg
+output unused_output = 3 input unused_input = 3 output _lamp = 4
 io unused_io { set 0 low }
 error unused_error { }
 sequence unused_sequence { wait 1 s }
@@ -503,14 +504,16 @@ sequence main {
 "#,
         &[
             r#"W0001 1:8 "unused""#,
-            r#"W0001 3:4 "unused_io""#,
-            r#"W0001 4:7 "unused_error""#,
-            r#"W0001 5:10 "unused_sequence""#,
-            r#"W0001 6:5 "written""#,
-            r#"W0001 9:12 "here""#,
-            r#"W0003 10:14 "1 / 2""#,
-            r#"W0002 11:24 "wait 1 s""#,
-            r#"W0002 13:3 "wait 3 s""#,
+            r#"W0001 3:8 "unused_output""#,
+            r#"W0001 3:32 "unused_input""#,
+            r#"W0001 4:4 "unused_io""#,
+            r#"W0001 5:7 "unused_error""#,
+            r#"W0001 6:10 "unused_sequence""#,
+            r#"W0001 7:5 "written""#,
+            r#"W0001 10:12 "here""#,
+            r#"W0003 11:14 "1 / 2""#,
+            r#"W0002 12:24 "wait 1 s""#,
+            r#"W0002 14:3 "wait 3 s""#,
         ],
     );
 }

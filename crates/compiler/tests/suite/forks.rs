@@ -136,7 +136,7 @@ fn a_fork_that_never_ends_is_followed_by_nothing() {
 }
 
 #[test]
-fn the_position_named_last_is_known_in_a_branch_and_not_behind_it() {
+fn the_position_named_last_is_that_of_the_branch_that_moves() {
     check(
         "joints a = [0, -90, 90, -90, -90, 0] deg
 joints b = [9, -90, 90, -90, -90, 0] deg
@@ -144,8 +144,10 @@ sequence main {
   move to a
   fork { toggle 1 } and { move to b reversible always move to a reversible always }
   move to b reversible always
+  fork { toggle 1 } and { move to a move 2 mm up }
+  move to b reversible always
 }",
-        &[r#"E0401 6:13 "reversible always""#],
+        &[r#"E0401 8:13 "reversible always""#],
     );
 }
 

@@ -19,6 +19,7 @@ action pick { move to a; move to b linearly; move to a }
 action nudge { move 2 mm up; move 2 mm down }
 action stray { move 2 mm up }
 action goes(there: joints) { move to there; wait 1 s }
+action reads { repeat x times { toggle 4 } }
 ";
 
 fn program(body: &str) -> String {
@@ -171,6 +172,7 @@ fn blocks_with_a_reverse_of_their_own_change_places() {
         &["do { set 7 low } in reverse { set 6 high }"],
     );
     becomes(&["skip in reverse { toggle 6 }"], &["do {} in reverse { toggle 6 }"]);
+    becomes(&["keep in reverse { toggle 6 }"], &["keep in reverse { toggle 6 }"]);
     refused("do { set 6 high } in reverse {}", "nothing replaces");
     refused("move to a\ndo { move to b } in reverse { wait 1 s }", "where these blocks end");
 }
@@ -191,4 +193,105 @@ fn what_is_allowed_is_said_of_the_sequence_alone() {
     let nested = allowing.join("\n").replace("{ toggle", "{ allow W0003 \"why\" toggle");
     assert_eq!(inverse(&nested).err(), None);
     assert_eq!(inverse(&nested), inverse(&plain.join("\n")));
+}
+
+/// The refusals, as `line "text" message`.
+fn refusals(source: &str, sequence: &str) -> Vec<String> {
+    let Err(NoInverse::Diagnosed(found)) = invert("work.obv", source, sequence) else {
+        panic!("it has an inverse");
+    };
+    let told = |one: obverse_syntax::diagnostic::Diagnostic| {
+        assert_eq!(one.code.as_str(), "E0701");
+        assert!(one.help.is_some(), "{one:?}");
+        let span = one.primary.span;
+        let line = source[..span.start as usize].lines().count().max(1);
+        let text = &source[span.start as usize..span.end as usize];
+        format!("{line} {text:?} {}", one.message)
+    };
+    found.into_iter().map(told).collect()
+}
+
+#[test]
+fn an_update_of_a_real_comes_back_rounded() {
+    let source = "\
+var gap = 0.1 mm
+var n = 0
+sequence work(by: length) {
+  n += 2
+  gap += 0.2 mm
+  var m = n
+  n -= m
+  var far: length = by
+  far -= 2 * by
+  if gap < by { n += 1 }
+}
+sequence main { call work(1 mm) }
+";
+    let found = refusals(source, "work");
+    let expected = [
+        r#"5 "gap += 0.2 mm" an update of a real has no exact inverse"#,
+        r#"9 "far -= 2 * by" an update of a real has no exact inverse"#,
+    ];
+    let is_expected = |one: &&str| found.iter().any(|found| found == *one);
+    assert!(expected.iter().all(is_expected), "{found:#?}");
+    becomes(
+        &["x += 1", "var near = 1 mm", "if near < 2 mm { y += 2 }"],
+        &["var near = 1 mm", "if near < 2 mm { y -= 2 }", "x -= 1"],
+    );
+}
+
+#[test]
+fn a_fork_whose_branches_read_what_others_assign() {
+    let fork = "fork { x += 1 wait 1 s } and { wait 1 s repeat x times { toggle 4 } }";
+    let message = "a fork whose branches read what others assign has no inverse";
+    refused(fork, message);
+    refused(&format!("allow W0601 \"meant\" {fork}"), message);
+    refused("fork { call reads } and { x += 1 }", message);
+    refused("repeat 2 times { fork { var z = x + 1 y += z } and { x += 1 } }", message);
+    becomes(
+        &["fork {", "x += 1", "} and {", "toggle 4", "wait 1 s", "}"],
+        &["fork {", "x -= 1", "} and {", "wait 1 s", "toggle 4", "}"],
+    );
+}
+
+#[test]
+fn what_is_no_sequence_has_its_reverse_with_it() {
+    let Err(NoInverse::OtherKind(other)) = invert("work.obv", &program(""), "lamp") else {
+        panic!("it is an I/O operation")
+    };
+    assert_eq!((other.kind, other.statement.as_str()), ("an I/O operation", "io lamp"));
+}
+
+/// What has no warning has no inverse with one.
+#[test]
+fn an_inverse_that_nobody_calls_is_meant_so() {
+    let source = "\
+output lamp = 2
+output left_out = 3
+var n = 0
+action work { n += 1 toggle lamp }
+sequence main { set left_out high call work if n > 3 { wait 1 s } }
+";
+    let inverse = invert("work.obv", source, "work").expect("an inverse");
+    let found = obverse_compiler::compile("inverse.obv", &inverse.text).diagnostics;
+    assert_eq!(found, [], "{}", inverse.text);
+    assert!(!inverse.text.contains("left_out"), "{}", inverse.text);
+}
+
+/// What does not compile is said where it comes from.
+#[test]
+fn an_inverse_that_does_not_compile_names_its_statement() {
+    let source = "\
+joints a = [0, 0, 0, 0, 0, 0] deg
+joints b = [1, 0, 0, 0, 0, 0] deg
+sequence work {
+  move to a
+  move to b reversible always
+  move 2 mm up
+  move 2 mm down
+}
+sequence main { call work }
+";
+    let message = "what takes this back does not compile";
+    assert_eq!(refusals(source, "work"), [format!("5 \"reversible always\" {message}")]);
 }

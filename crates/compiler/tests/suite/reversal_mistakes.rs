@@ -8,7 +8,7 @@ fn the_position_named_last() {
         r#"
 joints a = [0, -90, 90, -90, -90, 0] deg
 joints b = [9, -90, 90, -90, -90, 0] deg
-sequence other { wait 1 s }
+sequence other { move to a }
 action go(where: joints) { move to a move to where reversible always }
 sequence main {
   move to a reversible always
@@ -30,7 +30,6 @@ sequence main {
             r#"E0401 6:13 "reversible always""#,
             r#"E0401 9:13 "reversible always""#,
             r#"E0401 11:13 "reversible always""#,
-            r#"E0401 13:13 "reversible always""#,
             r#"E0401 14:20 "reversible always""#,
             r#"E0401 16:16 "reversible always""#,
         ],
@@ -91,10 +90,11 @@ fn the_position_named_last_in_loops_branches_and_blocks() {
         r#"
 joints a = [0, -90, 90, -90, -90, 0] deg
 joints b = [9, -90, 90, -90, -90, 0] deg
-error e { then continue }
+error e { recover using home then continue }
+sequence home { move to a }
 advanced move go { distance 1 mm x }
 sequence main {
-  move to a while holding { wait 1 s } move to b reversible always
+  move to a while holding { call home } move to b reversible always
   move to a for i from 1 to 2 { move to b reversible always }
   move to a repeat 2 times { move to a move to b reversible always }
   move to a if holding { move to b } else { move to b } move to a reversible always
@@ -112,19 +112,52 @@ sequence main {
 }
 "#,
         &[
-            r#"E0401 6:50 "reversible always""#,
-            r#"E0401 7:43 "reversible always""#,
-            r#"E0401 9:67 "reversible always""#,
-            r#"E0401 11:80 "reversible always""#,
-            r#"E0401 12:34 "reversible always""#,
-            r#"E0401 13:46 "reversible always""#,
-            r#"E0401 14:71 "reversible always""#,
-            r#"E0401 15:52 "reversible always""#,
-            r#"E0401 16:13 "reversible always""#,
-            r#"E0401 17:41 "reversible always""#,
-            r#"E0401 17:71 "reversible always""#,
-            r#"E0401 20:34 "reversible always""#,
+            r#"E0401 7:51 "reversible always""#,
+            r#"E0401 8:43 "reversible always""#,
+            r#"E0401 12:80 "reversible always""#,
+            r#"E0401 13:34 "reversible always""#,
+            r#"E0401 14:46 "reversible always""#,
+            r#"E0401 15:71 "reversible always""#,
+            r#"E0401 16:52 "reversible always""#,
+            r#"E0401 18:41 "reversible always""#,
+            r#"E0401 18:71 "reversible always""#,
+            r#"E0401 21:34 "reversible always""#,
         ],
+    );
+}
+
+#[test]
+fn what_leaves_the_arm_alone_forgets_no_position() {
+    check(
+        r#"
+joints a = [0, -90, 90, -90, -90, 0] deg
+joints b = [9, -90, 90, -90, -90, 0] deg
+io lamp { set 2 high }
+error noted { severity warning }
+error told { recover using tell then continue }
+error back { recover by reversing 2 actions otherwise using tell then continue }
+sequence tell { toggle 3 call tell_more }
+sequence tell_more { throw noted io lamp }
+sequence walk { call tell call walk_on }
+sequence walk_on { if holding { throw back } }
+sequence main {
+  move to a call tell move to b reversible always
+  while holding { toggle 3 } loop { wait 1 s if holding { break } } move to a reversible always
+  if holding { toggle 3 } else if force > 1 N { throw told } move to b reversible always
+  if holding { move to a } else { move to b move to a } move to b reversible always
+  if holding { move 2 mm up return } move to a reversible always
+  wait until input 1 high for up to 1 s else { toggle 3 } move to b reversible always
+  wait until input 1 high for up to 1 s else { move to a return } move to a reversible always
+  fork { toggle 3 } and { wait 1 s } move to b reversible always
+  fork { toggle 3 } and { move to b move to a } move to b reversible always
+  skip in reverse { toggle 3 } do { toggle 3 } in reverse { toggle 4 } move to a reversible always
+  keep in reverse { toggle 3 } irreversible "glued" { toggle 4 } move to b reversible always
+  speed fast tool gripper position p checkpoint c barrier "gone" move to a reversible always
+  call walk move to b reversible always
+  fork { move 1 mm up } and { toggle 3 } move to a reversible always
+}
+"#,
+        &[r#"E0401 24:23 "reversible always""#, r#"E0401 25:52 "reversible always""#],
     );
 }
 

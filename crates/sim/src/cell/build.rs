@@ -3,16 +3,17 @@
 
 use super::file::{
     ArmFile, CellFile, ContactFile, FixtureFile, ForceSensorFile, GripperFile, HoleFile,
-    InputsFile, ItemFile, LevelFile, OffsetFile, OutputsFile, PartFile, PlaceFile, PoseFile,
-    RuleFile, SpeedFile, SpeedsFile, ToolFile,
+    InputsFile, ItemFile, LevelFile, OffsetFile, OutputsFile, PartFile, PoseFile, RuleFile,
+    SpeedFile, SpeedsFile, ToolFile,
 };
 use super::number::{CoordinateMm, JointRad, TurnDeg};
+use super::seat;
+use super::uncertainty_build::{centres, falling};
 use super::{
     ArmSpec, Cell, CellError, ContactSpec, DEFAULT_SPEEDS, FILE_BYTES_MAX, FixtureSpec,
     ForceSensorSpec, GripperSpec, HoleSpec, InputRule, ItemSpec, OffsetSpec, Part, PegSpec, Shape,
     SpeedSpec, ToolSpec,
 };
-use crate::kinematics::forward;
 use obverse_geometry::{JointConfiguration, Pose};
 use std::f64::consts::PI;
 use toml::Spanned;
@@ -32,8 +33,8 @@ const ON_FACE_M: f64 = 1e-6;
 /// How far the axis of a hole may be from the normal of the face.
 const STRAIGHT: f64 = 1e-6;
 
-const MM: f64 = 1e-3;
-const DEG: f64 = PI / 180.0;
+pub(super) const MM: f64 = 1e-3;
+pub(super) const DEG: f64 = PI / 180.0;
 /// How far bodies that are pressed on each other may give way, in metres.
 const GIVE_M: f64 = 0.8e-3;
 
@@ -49,12 +50,12 @@ pub(super) fn parse(text: &str) -> Result<Cell, CellError> {
     Builder { text }.cell(&file)
 }
 
-struct Builder<'a> {
+pub(super) struct Builder<'a> {
     text: &'a str,
 }
 
 impl Builder<'_> {
-    fn error<T>(&self, place: &Spanned<T>, message: impl Into<String>) -> CellError {
+    pub(super) fn error<T>(&self, place: &Spanned<T>, message: impl Into<String>) -> CellError {
         CellError::at(self.text, place.span().start, message)
     }
 
@@ -70,14 +71,19 @@ impl Builder<'_> {
         let gripper =
             file.gripper.as_ref().map(|g| self.gripper(g, &tools, output_count)).transpose()?;
         let tcp = gripper.and_then(|g| tools.get(usize::from(g.tool))).unwrap_or(&tools[0]).tcp;
-        let items = file.item.iter().map(|item| self.item(item, &tcp));
-        let fixtures = file.fixture.iter().map(|fixture| self.fixture(fixture, &tcp));
+        let fixtures = self.fixtures(&file.fixture, &tcp)?;
+        let items = file.item.iter().map(|item| self.item(item, &tcp, &fixtures));
+        let items = items.collect::<Result<Vec<_>, _>>()?;
+        let mut inputs = self.inputs(&file.inputs, output_count)?;
         Ok(Cell {
             arm: self.arm(&file.arm)?,
             speeds: speeds(file),
-            items: items.collect::<Result<_, _>>()?,
-            fixtures: fixtures.collect::<Result<_, _>>()?,
-            inputs: self.inputs(&file.inputs, output_count)?,
+            feeders: self.feeders(file, &items, output_count, &mut inputs)?,
+            chance: self.chance(file, output_count)?,
+            falling: file.falling.as_ref().map(falling),
+            items,
+            fixtures,
+            inputs,
             contact: self.contact(&file.contact)?,
             force_sensor: self.force_sensor(&file.force_sensor)?,
             gripper,
@@ -86,14 +92,14 @@ impl Builder<'_> {
         })
     }
 
-    fn at_most(&self, what: &str, count: usize, limit: usize) -> Result<(), CellError> {
+    pub(super) fn at_most(&self, what: &str, count: usize, limit: usize) -> Result<(), CellError> {
         if count <= limit {
             return Ok(());
         }
         Err(CellError::at(self.text, 0, format!("there are {count} {what}, at most {limit}")))
     }
 
-    fn unique<'n>(
+    pub(super) fn unique<'n>(
         &self,
         names: impl Iterator<Item = &'n Spanned<String>>,
     ) -> Result<(), CellError> {
@@ -183,7 +189,7 @@ impl Builder<'_> {
         Ok(*count.get_ref())
     }
 
-    fn output(&self, output: &Spanned<u16>, count: u16) -> Result<u16, CellError> {
+    pub(super) fn output(&self, output: &Spanned<u16>, count: u16) -> Result<u16, CellError> {
         if *output.get_ref() >= count {
             let message =
                 format!("there is no output {}: outputs are 0 to below {count}", output.get_ref());
@@ -214,6 +220,9 @@ impl Builder<'_> {
             closed_level: level(file.closed),
             near_m: file.near_mm.0 * MM,
             near_rad: file.near_deg.0 * DEG,
+            centres: centres(file.centres),
+            grasp_offset: offset(&file.grasp_offset),
+            slip: file.slip.as_ref().map(|slip| self.slip(slip)).transpose()?,
         })
     }
 
@@ -268,7 +277,12 @@ impl Builder<'_> {
         }
     }
 
-    fn item(&self, file: &ItemFile, tcp: &Pose) -> Result<ItemSpec, CellError> {
+    fn item(
+        &self,
+        file: &ItemFile,
+        tcp: &Pose,
+        fixtures: &[FixtureSpec],
+    ) -> Result<ItemSpec, CellError> {
         let grasp = pose(&file.grasp);
         let mut parts = self.parts(&file.body)?;
         let mut peg = None;
@@ -290,9 +304,12 @@ impl Builder<'_> {
         // An item that was taught lies so that the gripper there grasps it.
         let held =
             if file.place.taught_at_rad.is_some() { grasp.inverse() } else { Pose::identity() };
+        let stand = self.stand(file.on.as_ref(), &file.place, tcp, fixtures)?;
+        let (pose, on) = stand.inside(&held);
         Ok(ItemSpec {
             name: file.name.get_ref().clone(),
-            pose: place(&file.place, tcp).compose(&held),
+            pose,
+            on,
             offset: offset(&file.offset),
             grasp,
             parts,
@@ -300,28 +317,54 @@ impl Builder<'_> {
         })
     }
 
-    fn fixture(&self, file: &FixtureFile, tcp: &Pose) -> Result<FixtureSpec, CellError> {
+    fn fixtures(&self, files: &[FixtureFile], tcp: &Pose) -> Result<Vec<FixtureSpec>, CellError> {
+        let mut fixtures = Vec::with_capacity(files.len());
+        for file in files {
+            let fixture = self.fixture(file, tcp, &fixtures)?;
+            fixtures.push(fixture);
+        }
+        Ok(fixtures)
+    }
+
+    fn fixture(
+        &self,
+        file: &FixtureFile,
+        tcp: &Pose,
+        before: &[FixtureSpec],
+    ) -> Result<FixtureSpec, CellError> {
         if let Some(hole) = file.hole.get(HOLES_MAX) {
             return Err(self.error(hole, format!("a fixture has at most {HOLES_MAX} holes")));
         }
         let parts = self.parts(&file.body)?;
-        let holes = file.hole.iter().map(|hole| self.hole(hole, &parts));
+        let holes = file.hole.iter().enumerate();
+        let holes = holes.map(|(number, hole)| self.hole(hole, number, &parts));
+        let stand = self.stand(file.on.as_ref(), &file.place, tcp, before)?;
         Ok(FixtureSpec {
             name: file.name.get_ref().clone(),
-            pose: place(&file.place, tcp),
+            pose: stand.pose,
+            on: stand.on,
             offset: offset(&file.offset),
             holes: holes.collect::<Result<_, _>>()?,
             parts,
         })
     }
 
-    fn hole(&self, file: &Spanned<HoleFile>, parts: &[Part]) -> Result<HoleSpec, CellError> {
-        let HoleFile { mouth, diameter_mm, depth_mm, chamfer_mm } = file.get_ref();
+    fn hole(
+        &self,
+        file: &Spanned<HoleFile>,
+        number: usize,
+        parts: &[Part],
+    ) -> Result<HoleSpec, CellError> {
+        let HoleFile { mouth, diameter_mm, depth_mm, chamfer_mm, .. } = file.get_ref();
+        let depth_m = depth_mm.0 * MM;
+        let seat = seat::of(file.get_ref(), depth_m).map_err(|why| self.error(file, why))?;
         let mut hole = HoleSpec {
+            number,
+            seat,
             part: 0,
             mouth: pose(mouth),
             diameter_m: diameter_mm.0 * MM,
-            depth_m: depth_mm.0 * MM,
+            depth_m,
             chamfer_m: chamfer_mm.map_or(0.0, |chamfer| chamfer.0 * MM),
         };
         hole.part = parts.iter().position(|part| is_drilled(part, &hole)).ok_or_else(|| {
@@ -377,36 +420,30 @@ impl Builder<'_> {
         }
         sensor.noise_n = file.noise_n.map_or(sensor.noise_n, |noise| noise.0);
         sensor.bias_n = file.bias_n.map_or(sensor.bias_n, |bias| bias.0);
+        sensor.bias_uniform_n = file.bias_uniform_n.map_or(0.0, |bias| bias.0);
+        sensor.bias_normal_n = file.bias_normal_n.map_or(0.0, |bias| bias.0);
         sensor.sample_s = file.sample_s.map_or(sensor.sample_s, |sample| sample.0);
         Ok(sensor)
     }
 }
 
-fn level(file: LevelFile) -> bool {
+pub(super) fn level(file: LevelFile) -> bool {
     matches!(file, LevelFile::High)
 }
 
-fn joints(file: &[JointRad; 6]) -> JointConfiguration {
+pub(super) fn joints(file: &[JointRad; 6]) -> JointConfiguration {
     JointConfiguration(file.map(|joint| joint.0))
 }
 
-fn pose_of(xyz_mm: Option<[CoordinateMm; 3]>, turn_deg: Option<[TurnDeg; 3]>) -> Pose {
+pub(super) fn pose_of(xyz_mm: Option<[CoordinateMm; 3]>, turn_deg: Option<[TurnDeg; 3]>) -> Pose {
     Pose::from_rotation_vector(
         xyz_mm.map_or([0.0; 3], |xyz| xyz.map(|axis| axis.0 * MM)),
         turn_deg.map_or([0.0; 3], |turn| turn.map(|axis| axis.0 * DEG)),
     )
 }
 
-fn pose(file: &PoseFile) -> Pose {
+pub(super) fn pose(file: &PoseFile) -> Pose {
     pose_of(file.xyz_mm, file.rotation_vector_deg)
-}
-
-fn place(file: &PlaceFile, tcp: &Pose) -> Pose {
-    let pose = pose_of(file.xyz_mm, file.rotation_vector_deg);
-    match &file.taught_at_rad {
-        None => pose,
-        Some(taught) => forward(&joints(taught)).compose(tcp).compose(&pose),
-    }
 }
 
 /// Whether a hole is drilled into a part: straight into a face, and all of it inside.
@@ -430,7 +467,7 @@ fn is_drilled(part: &Part, hole: &HoleSpec) -> bool {
     faces == 1
 }
 
-fn offset(file: &OffsetFile) -> OffsetSpec {
+pub(super) fn offset(file: &OffsetFile) -> OffsetSpec {
     fn six(xyz: Option<[f64; 3]>, turn: Option<[f64; 3]>) -> [f64; 6] {
         let [x, y, z] = xyz.unwrap_or_default().map(|axis| axis * MM);
         let [a, b, c] = turn.unwrap_or_default().map(|axis| axis * DEG);
@@ -469,12 +506,13 @@ fn speeds(file: &CellFile) -> [SpeedSpec; 5] {
 
 impl Default for OutputsFile {
     fn default() -> Self {
-        Self { count: Spanned::new(0..0, 8) }
+        Self { count: Spanned::new(0..0, 8), stick: Vec::new() }
     }
 }
 
 impl Default for InputsFile {
     fn default() -> Self {
-        Self { count: Spanned::new(0..0, 8), rule: Vec::new() }
+        let count = Spanned::new(0..0, 8);
+        Self { count, rule: Vec::new(), stick: Vec::new(), bounce: Vec::new() }
     }
 }

@@ -8,6 +8,11 @@ use super::number::{
     JointDeg, JointRad, JointSpeedDegPerS, NearDeg, NearMm, SampleS, SizeMm, SpreadDeg, SpreadMm,
     StiffnessNPerMm, StiffnessNmPerDeg, TimeS, ToolAccelerationMmPerS2, ToolSpeedMmPerS, TurnDeg,
 };
+use super::seat::{PressFile, SnapFile, ThreadFile};
+use super::uncertainty_file::{
+    BounceFile, CentresFile, ChanceFile, FallingFile, FeederFile, InputStickFile, OutputStickFile,
+    SlipFile,
+};
 use serde::Deserialize;
 use toml::Spanned;
 
@@ -34,6 +39,11 @@ pub(super) struct CellFile {
     pub(super) contact: ContactFile,
     #[serde(default)]
     pub(super) force_sensor: ForceSensorFile,
+    #[serde(default)]
+    pub(super) feeder: Vec<FeederFile>,
+    #[serde(default)]
+    pub(super) chance: ChanceFile,
+    pub(super) falling: Option<FallingFile>,
 }
 
 #[derive(Deserialize)]
@@ -121,6 +131,11 @@ pub(super) struct GripperFile {
     pub(super) closed: LevelFile,
     pub(super) near_mm: NearMm,
     pub(super) near_deg: NearDeg,
+    #[serde(default)]
+    pub(super) centres: CentresFile,
+    #[serde(default)]
+    pub(super) grasp_offset: OffsetFile,
+    pub(super) slip: Option<Spanned<SlipFile>>,
 }
 
 #[derive(Clone, Copy, Deserialize, Default)]
@@ -135,6 +150,8 @@ pub(super) enum LevelFile {
 #[serde(deny_unknown_fields)]
 pub(super) struct OutputsFile {
     pub(super) count: Spanned<u16>,
+    #[serde(default)]
+    pub(super) stick: Vec<OutputStickFile>,
 }
 
 #[derive(Deserialize)]
@@ -143,6 +160,10 @@ pub(super) struct InputsFile {
     pub(super) count: Spanned<u16>,
     #[serde(default)]
     pub(super) rule: Vec<RuleFile>,
+    #[serde(default)]
+    pub(super) stick: Vec<InputStickFile>,
+    #[serde(default)]
+    pub(super) bounce: Vec<BounceFile>,
 }
 
 #[derive(Deserialize)]
@@ -167,6 +188,7 @@ pub(super) struct ChangeFile {
 #[serde(deny_unknown_fields)]
 pub(super) struct ItemFile {
     pub(super) name: Spanned<String>,
+    pub(super) on: Option<Spanned<String>>,
     pub(super) place: PlaceFile,
     #[serde(default)]
     pub(super) offset: OffsetFile,
@@ -189,6 +211,7 @@ pub(super) struct PegFile {
 #[serde(deny_unknown_fields)]
 pub(super) struct FixtureFile {
     pub(super) name: Spanned<String>,
+    pub(super) on: Option<Spanned<String>>,
     pub(super) place: PlaceFile,
     #[serde(default)]
     pub(super) offset: OffsetFile,
@@ -207,6 +230,9 @@ pub(super) struct HoleFile {
     pub(super) depth_mm: SizeMm,
     #[serde(default)]
     pub(super) chamfer_mm: Option<ChamferMm>,
+    pub(super) snap: Option<SnapFile>,
+    pub(super) press: Option<PressFile>,
+    pub(super) thread: Option<ThreadFile>,
 }
 
 #[derive(Deserialize, Default)]
@@ -235,6 +261,8 @@ pub(super) struct ContactFile {
 pub(super) struct ForceSensorFile {
     pub(super) noise_n: Option<ForceN>,
     pub(super) bias_n: Option<BiasN>,
+    pub(super) bias_uniform_n: Option<ForceN>,
+    pub(super) bias_normal_n: Option<ForceN>,
     pub(super) window: Option<Spanned<u32>>,
     pub(super) sample_s: Option<SampleS>,
 }

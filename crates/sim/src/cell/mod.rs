@@ -9,12 +9,19 @@ mod error;
 mod file;
 mod number;
 mod places;
+mod seat;
+mod stand;
 #[cfg(test)]
 mod tests;
+mod uncertainty;
+mod uncertainty_build;
+mod uncertainty_file;
 
 pub use error::CellError;
 pub use places::CellPlaces;
+pub use uncertainty::{ChanceSpec, FallSpec, FeederSpec, InputFlaw, SlipSpec};
 
+use crate::seat::Seat;
 use obverse_geometry::{JOINT_COUNT, JointConfiguration, Pose};
 use std::f64::consts::{PI, TAU};
 
@@ -44,6 +51,12 @@ pub struct Cell {
     pub contact: ContactSpec,
     /// The force-torque sensor.
     pub force_sensor: ForceSensorSpec,
+    /// What presents items.
+    pub feeders: Vec<FeederSpec>,
+    /// What may go wrong in any motion, and on the wires.
+    pub chance: ChanceSpec,
+    /// When items fall; if none is said, never.
+    pub falling: Option<FallSpec>,
 }
 
 /// The arm: where it starts and how far its joints turn.
@@ -118,6 +131,12 @@ pub struct GripperSpec {
     pub near_m: f64,
     /// How near in orientation, in radians.
     pub near_rad: f64,
+    /// Whether closing centres an item along x and along y of the tool centre point.
+    pub centres: [bool; 2],
+    /// By how much taking an item moves it in the gripper, in the frame of the tool centre point.
+    pub grasp_offset: OffsetSpec,
+    /// How what is held slips, if it does.
+    pub slip: Option<SlipSpec>,
 }
 
 /// Where an input gets its level from.
@@ -136,6 +155,11 @@ pub enum InputRule {
     At(Vec<(f64, bool)>),
     /// It is high while the gripper holds an item.
     Holding,
+    /// It is high while a feeder's part is at its place.
+    PartThere {
+        /// The feeder, by its place in the list.
+        feeder: usize,
+    },
 }
 
 /// An item.
@@ -145,6 +169,8 @@ pub struct ItemSpec {
     pub name: String,
     /// Where it should be at the start.
     pub pose: Pose,
+    /// The fixture that it stands on, if it moves with one.
+    pub on: Option<On>,
     /// How far it may truly be from there.
     pub offset: OffsetSpec,
     /// The tool centre point in the frame of the item when it is gripped as it should be.
@@ -173,6 +199,8 @@ pub struct FixtureSpec {
     pub name: String,
     /// Where it should stand.
     pub pose: Pose,
+    /// The fixture that it stands on, if it moves with one.
+    pub on: Option<On>,
     /// How far it may truly be from there.
     pub offset: OffsetSpec,
     /// Its body, without its holes.
@@ -181,9 +209,20 @@ pub struct FixtureSpec {
     pub holes: Vec<HoleSpec>,
 }
 
+/// What a thing stands on, whose true offset it shares.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct On {
+    /// The fixture, by its place in the list: for a fixture, one before it.
+    pub fixture: usize,
+    /// Where the thing should be in the frame of that fixture.
+    pub place: Pose,
+}
+
 /// A round blind hole in a fixture.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct HoleSpec {
+    /// Its place in the fixture's list of holes.
+    pub number: usize,
     /// The part of the fixture that it is in, by its place in the list.
     pub part: usize,
     /// The middle of its mouth in the frame of the fixture; z points into the hole.
@@ -194,6 +233,8 @@ pub struct HoleSpec {
     pub depth_m: f64,
     /// The width of the chamfer of 45 degrees at the mouth, in metres.
     pub chamfer_m: f64,
+    /// What it does to an item beside guiding it.
+    pub seat: Option<Seat>,
 }
 
 /// How far a thing may truly be from where it should be, in its own frame: a fixed part, a part
@@ -230,6 +271,10 @@ pub struct ForceSensorSpec {
     pub noise_n: f64,
     /// What it reads without load, in newtons.
     pub bias_n: f64,
+    /// Half the width of what a run adds to that, in newtons: the uniform part.
+    pub bias_uniform_n: f64,
+    /// The standard deviation of the normal part of it, in newtons.
+    pub bias_normal_n: f64,
     /// How many samples the running average takes in.
     pub window: u32,
     /// The time between two samples, in seconds.
@@ -265,12 +310,16 @@ impl Cell {
                 closed_level: true,
                 near_m: 5e-3,
                 near_rad: PI / 18.0,
+                centres: [false; 2],
+                grasp_offset: OffsetSpec::default(),
+                slip: None,
             }),
             output_count: 8,
             inputs: vec![InputRule::Constant(false); 8],
             items: vec![ItemSpec {
                 name: "part".to_owned(),
                 pose: crate::kinematics::forward(&home),
+                on: None,
                 offset: OffsetSpec::default(),
                 grasp: Pose::identity(),
                 parts: Vec::new(),
@@ -279,6 +328,9 @@ impl Cell {
             fixtures: Vec::new(),
             contact: ContactSpec::default(),
             force_sensor: ForceSensorSpec::default(),
+            feeders: Vec::new(),
+            chance: ChanceSpec::default(),
+            falling: None,
         }
     }
 }
@@ -321,6 +373,13 @@ impl Default for ContactSpec {
 
 impl Default for ForceSensorSpec {
     fn default() -> Self {
-        Self { noise_n: 0.0, bias_n: 0.0, window: 4, sample_s: 0.008 }
+        Self {
+            noise_n: 0.0,
+            bias_n: 0.0,
+            bias_uniform_n: 0.0,
+            bias_normal_n: 0.0,
+            window: 4,
+            sample_s: 0.008,
+        }
     }
 }

@@ -57,6 +57,12 @@ numbers! {
     ToolAccelerationMmPerS2, "a tool acceleration in mm/s2", 1.0, 100_000.0;
     /// An acceleration of a joint in degrees a second squared.
     JointAccelerationDegPerS2, "a joint acceleration in deg/s2", 1.0, 10_000.0;
+    /// The lead of a thread in millimetres a turn; none for a bayonet.
+    PitchMm, "a pitch in mm", 0.0, 100.0;
+    /// A number of turns.
+    Turns, "a number of turns", 0.01, 1_000.0;
+    /// How a force grows with an angle, in newtons a degree.
+    TighteningNPerDeg, "a force in N a degree", 0.01, 10_000.0;
     /// A time in seconds.
     TimeS, "a time in s", 0.0, 86_400.0;
     /// A stiffness in newtons a millimetre.
@@ -71,6 +77,8 @@ numbers! {
     ForceLimitN, "a force limit in N", 0.1, 10_000.0;
     /// The bias of a sensor in newtons.
     BiasN, "a bias in N", -1_000.0, 1_000.0;
+    /// A probability.
+    Probability, "a probability", 0.0, 1.0;
     /// The time between two samples of a sensor in seconds.
     SampleS, "a sampling time in s", 0.000_5, 1.0;
 }

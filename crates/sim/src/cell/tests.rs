@@ -213,3 +213,103 @@ fn hostile_files_are_refused_without_harm() {
 fn columns_count_characters() {
     expect("[[item]]\nname = \"é\" # é\nplace = { xyz_mm = [\"ü\", 0, 0] }", 3, 21, "invalid");
 }
+
+/// A cell with something of everything, and `more` lines behind it.
+fn expect_with(more: &str, column: usize, word: &str) {
+    let item = "[[item]]\nname = \"pin\"\nplace = {}\n";
+    let line = item.lines().count() + more.lines().count();
+    expect(&format!("{item}{more}"), line, column, word);
+}
+
+const GRIPPER: &str = "[gripper]\noutput = 0\nnear_mm = 1\nnear_deg = 1\n";
+const FEEDER: &str = "[[feeder]]\nname = \"tray\"\nitem = \"pin\"\noutput = 3\n";
+
+#[test]
+fn probabilities_and_spreads_out_of_range_are_refused_in_place() {
+    expect("[chance]\nstops_short = 1.01", 2, 15, "a probability");
+    expect("[chance]\nprotective_stop = -0.1", 2, 19, "from 0 to 1");
+    expect("[chance]\nemergency_stop = nan", 2, 18, "NaN");
+    expect("[chance]\nfire = 0.1", 2, 1, "fire");
+    expect("[falling]\nknock_n = 0", 2, 11, "force limit");
+    expect("[falling]\nsupport_mm = inf", 2, 14, "a distance");
+    expect("[force_sensor]\nbias_normal_n = -1", 2, 17, "a force");
+    expect_with(&format!("{FEEDER}empty = 2"), 9, "a probability");
+    expect_with(&format!("{FEEDER}parts = -1"), 9, "-1");
+    let spread = "grasp_offset = { normal_mm = [0, -1, 0] }";
+    expect_with(&format!("{GRIPPER}{spread}"), 30, "a spread in mm");
+    expect("[outputs]\ncount = 2\nstick = [{ output = 1 }]", 3, 10, "probability");
+}
+
+#[test]
+fn a_slip_is_of_something() {
+    let slip = |slip: &str| format!("{GRIPPER}slip = {slip}");
+    expect_with(&slip("{ probability = 0.1 }"), 8, "`offset`");
+    expect_with(&slip("{ fast = 0.1, lost = 1 }"), 17, "`fast_mm_per_s`");
+    expect_with(&slip("{ fast_mm_per_s = 10, lost = 1 }"), 26, "`fast`");
+    expect_with(&slip("{ contact_n = 10, lost = 1 }"), 22, "`in_contact`");
+}
+
+#[test]
+fn a_feeder_presents_an_item_on_lines_that_are_there() {
+    let of = |from: &str, to: &str| FEEDER.replace(from, to);
+    let error = error(&of("\"pin\"", "\"nut\""));
+    assert!(error.message.contains("no item `nut`"), "{error}");
+    expect_with(&of("output = 3", "output = 9"), 10, "no output 9");
+    expect_with(&format!("{FEEDER}input = 8"), 9, "no input 8");
+    expect_with(&format!("{FEEDER}askew = 0.1"), 9, "`askew_offset`");
+    let ruled = "[inputs]\ncount = 2\nrule = [{ input = 1, level = \"low\" }]\n";
+    expect_with(&format!("{ruled}{FEEDER}input = 1"), 9, "has a rule");
+    let twice = format!("{FEEDER}{}", of("tray", "box"));
+    let message = Cell::parse(&format!("{LEAST}[[item]]\nname = \"pin\"\nplace = {{}}\n{twice}"));
+    assert!(message.unwrap_err().message.contains("another feeder presents `pin`"));
+}
+
+#[test]
+fn wires_are_flawed_once() {
+    let stick = "stick = [{ output = 0, probability = 0.1 }, { output = 0, probability = 0.2 }]";
+    expect(&format!("[outputs]\ncount = 1\n{stick}"), 3, 56, "twice");
+    let stick = "stick = [{ input = 0, probability = 0.1 }, { input = 0, probability = 0.2 }]";
+    expect(&format!("[inputs]\ncount = 1\n{stick}"), 3, 54, "twice");
+    let bounce = "bounce = [{ input = 0, for_s = 0.1 }, { input = 0, for_s = 0.2 }]";
+    expect(&format!("[inputs]\ncount = 1\n{bounce}"), 3, 49, "twice");
+    expect("[inputs]\ncount = 1\nbounce = [{ input = 1, for_s = 1 }]", 3, 21, "no input 1");
+}
+
+#[test]
+fn nothing_stands_on_itself_or_on_what_is_not_there() {
+    let fixture = |name: &str, on: &str| {
+        format!("[[fixture]]\nname = \"{name}\"\non = \"{on}\"\nplace = {{}}\n")
+    };
+    expect(&fixture("a", "a"), 3, 6, "no fixture `a` before this");
+    expect(&(fixture("a", "b") + &fixture("b", "a")), 3, 6, "no fixture `b` before this");
+    expect("[[item]]\nname = \"i\"\non = \"a\"\nplace = {}", 3, 6, "no fixture `a`");
+}
+
+#[test]
+fn what_stands_on_a_fixture_is_placed_in_its_frame() {
+    let cell = Cell::parse(&format!(
+        "{LEAST}
+        [[fixture]]
+        name = \"pallet\"
+        place = {{ xyz_mm = [500, 0, 0], rotation_vector_deg = [0, 0, 90] }}
+        [[fixture]]
+        name = \"nest\"
+        on = \"pallet\"
+        place = {{ xyz_mm = [100, 0, 0] }}
+        [[item]]
+        name = \"pin\"
+        on = \"nest\"
+        place = {{ xyz_mm = [0, 10, 50] }}
+        [[item]]
+        name = \"taught\"
+        on = \"nest\"
+        place = {{ taught_at_rad = [0, -1.5, 1.5, 0, 0, 0] }}
+        "
+    ))
+    .unwrap();
+    let at = |item: usize| cell.items[item].pose.translation_m;
+    let expected = nalgebra::Vector3::new(0.49, 0.1, 0.05);
+    assert!((at(0) - expected).norm() < 1e-12, "{}", at(0));
+    let taught = crate::kinematics::forward(&cell.arm.home);
+    assert!(same_pose(&cell.items[1].pose, &taught));
+}

@@ -140,6 +140,36 @@ fn a_peg_that_is_too_thick_is_stuck_in_the_chamfer() {
 }
 
 #[test]
+fn the_push_is_continuous_where_a_tilted_rim_passes_the_throat() {
+    // The higher side passes the throat 0.5 mm after the lower one, against which it is pushed.
+    let fit = Fit { hole_radius_mm: 10.3, ..FIT };
+    let at = |depth_mm: f64, offset_mm: f64| {
+        let mut held = tilted(0.05, depth_mm);
+        held.tip_mm.x += offset_mm;
+        fit.contact(&held)
+    };
+    let pushes: Vec<f64> =
+        (0..200).map(|step| at(1.0 + 0.01 * f64::from(step), 0.9).lateral_n.x).collect();
+    let jump = pushes.windows(2).map(|pair| (pair[1] - pair[0]).abs()).fold(0.0, f64::max);
+    assert!(jump < 8.0 * 0.03, "{jump} N within 0.01 mm: {pushes:?}");
+}
+
+#[test]
+fn a_rim_that_hangs_on_the_throat_takes_the_force_of_the_steeper_slope() {
+    // Without friction and offset along the tilt, aside by c dip / z: the slope is c dip / z^2.
+    let fit = Fit { friction: 0.0, peg_chamfer_mm: 0.0, ..FIT };
+    let (clearance_mm, tilt, z) = (0.1, 0.03, 0.15);
+    let dip_mm = 10.0 * tilt;
+    let mut held = tilted(tilt, 1.0 + z);
+    held.tip_mm.x = 1.0;
+    let contact = fit.contact(&held);
+    let slope = clearance_mm * dip_mm / (z * z);
+    assert!(slope > 1.3, "{slope}");
+    let found = contact.axial_n / contact.lateral_n.norm();
+    assert!((found - slope).abs() < 0.1 * slope, "{found} is not {slope}: {contact:?}");
+}
+
+#[test]
 fn without_friction_nothing_wedges() {
     let slippery = Fit { friction: 0.0, ..FIT };
     let contact = slippery.contact(&tilted(0.06, 10.0));

@@ -5,13 +5,14 @@ use crate::cell::Cell;
 use crate::random::{Stream, unit};
 use obverse_geometry::JointConfiguration;
 use obverse_workcell::{Goal, Motion, Path, Speed, ToolId};
+use std::sync::Arc;
 
 /// How many places of a route brute force looks at.
 const PLACES: u32 = 200;
 
 fn world() -> World {
     let text = include_str!("../../../../programs/bench_cell.toml");
-    World::new(&Cell::parse(text).unwrap(), 1)
+    World::new(Arc::new(Cell::parse(text).unwrap()), 1)
 }
 
 fn route(world: &World, from: &JointConfiguration, to: Goal, path: Path) -> Option<Route> {
@@ -55,11 +56,11 @@ fn compare(world: &World, route: &Route) -> Option<bool> {
     let items = Inventory::new(world.item_poses());
     let tool = &world.cell.tools[0];
     // All bodies, also those that the search does not pair up.
-    let all = Sweep::new(world, route, &items, tool);
+    let all = Sweep::new(world, route, &items, tool, None);
     if worst_excess_n(&all, 0.0) > -10.0 {
         return None;
     }
-    let outcome = Sweep::new(world, route, &items, tool).run(1.0, 0.0, 0.0, None);
+    let outcome = Sweep::new(world, route, &items, tool, None).run(1.0, 0.0, 0.0, None);
     for step in 0..=PLACES {
         let fraction = f64::from(step) / f64::from(PLACES) * outcome.fraction;
         // What is pressed exactly to the limit at the end may round to beyond it.

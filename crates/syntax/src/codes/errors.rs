@@ -350,9 +350,10 @@ macro_rules! errors {
     // E04xx: reversal.
     NoNamedPosition "E0401" "the position named last is not known"
         why "`reversible always` takes a move back to the configuration that the program named \
-             last, without a record. That is known only where a `move to` a joint configuration \
-             comes before it on the same straight way, with no other motion, call or join of ways \
-             between them. Without `reversible always` a move goes back to where it was recorded \
+             last, without a record. That is known only where on every way that leads here the \
+             same `move to` a joint configuration comes last, with nothing between that may move \
+             the arm: another motion, a call or an error that leads to one, a loop that comes \
+             round to one. Without `reversible always` a move goes back to where it was recorded \
              to begin."
         wrong "joints a = [0, -90, 90, -90, -90, 0] deg\n\
                sequence main { move to a reversible always }"
@@ -461,10 +462,11 @@ macro_rules! errors {
              that it takes back: it has no tape. So each statement must say by itself, or with \
              those before it, what takes it back. A move goes back to the place that was named \
              before it; an output to the level that it was set to before, or to the counterpart \
-             of its I/O operation; `x += e` is taken back by `x -= e`; a branch or a loop by its \
-             assertion (`ending when`, `entered when`) or by what it leaves alone. Readings, \
-             errors, barriers and ways out of the middle leave no such trace. A sequence begins \
-             where its first move leads, with the outputs that are set before it."
+             of its I/O operation; `n += e` of an integer is taken back by `n -= e`; a branch \
+             or a loop by its assertion (`ending when`, `entered when`) or by what it leaves \
+             alone. Readings, sums of reals, errors, barriers and ways out of the middle leave \
+             no such trace. A sequence begins where its first move leads, with the outputs that \
+             are set before it."
         wrong "joints a = [0, 0, 0, 0, 0, 0] deg\n\
                joints b = [9, 0, 0, 0, 0, 0] deg\n\
                sequence main { move to a move 20 mm up in base move to b }"

@@ -189,7 +189,7 @@ impl<'s> Writer<'s> {
         for (index, thing) in things.iter().enumerate() {
             if index > 0 {
                 self.tight(",");
-                self.glue(Glue::Break);
+                self.glue(Glue::Break(0));
             }
             write(self, thing);
         }
@@ -214,7 +214,7 @@ impl<'s> Writer<'s> {
                 self.extent(*depth, extent);
                 for change in changes {
                     self.tight(",");
-                    self.glue(Glue::Break);
+                    self.glue(Glue::Break(0));
                     match &change.value {
                         Change::Perturbed { within, at_random } => {
                             self.word("perturbed");

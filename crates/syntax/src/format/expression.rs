@@ -83,12 +83,12 @@ fn sign(operator: BinaryOperator) -> &'static str {
 impl<'s> Writer<'s> {
     /// An expression where any may stand.
     pub(super) fn expression(&mut self, expression: &Expression<'s>) {
-        self.operand(expression, Level::Or);
+        self.nested(|writer| writer.operand(expression, Level::Or));
     }
 
     /// One where no sum may stand: a distance before a direction.
     pub(super) fn product(&mut self, expression: &Expression<'s>) {
-        self.operand(expression, Level::Product);
+        self.nested(|writer| writer.operand(expression, Level::Product));
     }
 
     /// Elements in brackets, with their unit.
@@ -150,13 +150,7 @@ impl<'s> Writer<'s> {
                 self.operand(operand, Level::Not);
             }
             ExpressionKind::Binary { operator, left, right } => {
-                let level = Level::of(*operator);
-                // Comparisons do not chain.
-                let is_comparison = level == Level::Comparison;
-                self.operand(left, if is_comparison { level.above() } else { level });
-                self.glue(Glue::Break);
-                self.word(sign(*operator));
-                self.operand(right, level.above());
+                self.binary(*operator, left, right);
             }
             ExpressionKind::Function { name, arguments } => {
                 self.text(name.value);
@@ -172,5 +166,21 @@ impl<'s> Writer<'s> {
             // Only in the tree of a text that is wrong.
             ExpressionKind::Missing => {}
         }
+    }
+
+    /// `a + b`, of which `a` may be `c + d`: a row of operators is as deep as its last.
+    fn binary(&mut self, operator: BinaryOperator, left: &Expression<'s>, right: &Expression<'s>) {
+        let level = Level::of(operator);
+        // Comparisons do not chain.
+        let least = if level == Level::Comparison { level.above() } else { level };
+        let is_row =
+            Level::of_expression(&left.kind) == level && self.parentheses(left, least) == 0;
+        match is_row {
+            true => self.operand(left, least),
+            false => self.nested(|writer| writer.operand(left, least)),
+        }
+        self.glue(Glue::Break(self.nesting));
+        self.word(sign(operator));
+        self.nested(|writer| writer.operand(right, level.above()));
     }
 }

@@ -82,8 +82,8 @@ impl<'s> Layout<'s> {
             if index > 0 && !piece.gap.comments.is_empty() {
                 self.close(&mut line, indent + if piece.is_link { 0 } else { CONTINUATION });
                 self.comments(&piece.gap.comments, line.indent);
-            } else if piece.glue == Glue::Break
-                && line.width() + unbroken(&nodes[index..]) > MAX_COLUMNS
+            } else if let Glue::Break(depth) = piece.glue
+                && line.width() + unbroken(&nodes[index..], depth) > MAX_COLUMNS
             {
                 self.close(&mut line, indent + CONTINUATION);
             }
@@ -182,13 +182,15 @@ fn branches<'n, 's>(nodes: &'n [Node<'s>]) -> Vec<&'n [Node<'s>]> {
     }
 }
 
-/// How wide it is before there is the next place to break, a blank before it included.
-fn unbroken(nodes: &[Node<'_>]) -> usize {
+/// How wide it is before there is the next place to break that is no deeper, a blank before it
+/// included.
+fn unbroken(nodes: &[Node<'_>], depth: u16) -> usize {
     let first = usize::from(nodes[0].first().glue != Glue::Tight);
     let mut width = first + nodes[0].first().text.chars().count();
     for node in &nodes[1..] {
         let piece = node.first();
-        if piece.glue == Glue::Break || !piece.gap.comments.is_empty() {
+        let is_place = matches!(piece.glue, Glue::Break(other) if other <= depth);
+        if is_place || !piece.gap.comments.is_empty() {
             break;
         }
         width += usize::from(piece.glue != Glue::Tight) + piece.text.chars().count();

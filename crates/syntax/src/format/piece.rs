@@ -10,8 +10,9 @@ pub(super) enum Glue {
     Tight,
     /// A blank.
     Blank,
-    /// A blank, or a new line where there is no room.
-    Break,
+    /// A blank, or a new line where there is no room. So deep in an expression: a line is broken
+    /// where it is least deep.
+    Break(u16),
 }
 
 /// Where lines of a kind that follow each other are aligned, in the order in which these places

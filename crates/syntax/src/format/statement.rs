@@ -164,7 +164,7 @@ impl<'s> Writer<'s> {
                 for (index, parameter) in parameters.iter().enumerate() {
                     if index > 0 {
                         self.tight(",");
-                        self.glue(Glue::Break);
+                        self.glue(Glue::Break(0));
                     }
                     self.reverse_parameter(&parameter.value);
                 }
@@ -359,7 +359,7 @@ impl<'s> Writer<'s> {
     /// `ending when p`, `entered when p`
     fn assertion(&mut self, word: &'static str, assertion: Option<&Expression<'s>>) {
         if let Some(assertion) = assertion {
-            self.glue(Glue::Break);
+            self.glue(Glue::Break(0));
             self.words(&[word, "when"]);
             self.expression(assertion);
         }

@@ -18,6 +18,8 @@ pub(super) struct Writer<'s> {
     column: Option<Column>,
     /// Whether the next piece begins a branch.
     is_link: bool,
+    /// How deep in an expression it is.
+    pub(super) nesting: u16,
 }
 
 /// How a block is set.
@@ -44,7 +46,8 @@ impl<'s> Writer<'s> {
 
     /// With what the tree says alone.
     pub(super) fn of_tree() -> Self {
-        Self { source: None, nodes: Vec::new(), glue: None, column: None, is_link: false }
+        let (source, nodes, glue, column) = (None, Vec::new(), None, None);
+        Self { source, nodes, glue, column, is_link: false, nesting: 0 }
     }
 
     /// A whole file.
@@ -119,13 +122,20 @@ impl<'s> Writer<'s> {
             if index > 0 {
                 self.tight(",");
             }
-            self.glue(if index > 0 { Glue::Break } else { Glue::Tight });
-            write(self, element);
+            self.glue(if index > 0 { Glue::Break(self.nesting) } else { Glue::Tight });
+            self.nested(|writer| write(writer, element));
         }
         if let Some(source) = &mut self.source {
             source.skip(",");
         }
         self.tight(close);
+    }
+
+    /// What is a level deeper in an expression than what is around it.
+    pub(super) fn nested(&mut self, write: impl FnOnce(&mut Self)) {
+        self.nesting = self.nesting.saturating_add(1);
+        write(self);
+        self.nesting = self.nesting.saturating_sub(1);
     }
 
     /// A block.

@@ -31,7 +31,7 @@ impl Acts<'_> {
         let (before, mut motion) = alteration.of(self.pc, motion);
         let Some(before) = before else { return Ok(motion) };
         self.cell.execute(&before)?;
-        if let Goal::Displaced { from, .. } = &mut motion.goal {
+        if let Goal::Displaced { from, .. } | Goal::Turned { from, .. } = &mut motion.goal {
             *from = self.cell.joints();
         }
         Ok(motion)

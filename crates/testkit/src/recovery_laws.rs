@@ -1,0 +1,173 @@
+//! The laws of recovery over generated programs: going back along the trail leads to where an
+//! action began, exactly; and whatever goes wrong wherever, and whatever is done about it, a run
+//! ends, within bounds, where it can be taken back from.
+
+use crate::logged::Logged;
+use crate::programs::{self, Options};
+use arbitrary::{Result, Unstructured};
+use obverse_bytecode::{FaultName, Module, Verified, verify};
+use obverse_compiler::compile;
+use obverse_recovery::{
+    Bounds, Ending, Memory, Operator, Recovery, Strategy, Trail, drive, recover,
+};
+use obverse_vm::{Direction, Event, Limits, Machine, Mark, Observer, Stop};
+use obverse_workcell::{Fault, Safety, Workcell};
+use std::collections::BTreeMap;
+
+/// The longest run, in instructions.
+const MAX_INSTRUCTIONS: u64 = 3_000;
+
+/// Taken back to where an action began, the machine and what it commands are as they were then, and
+/// the trail is as long as it was.
+///
+/// # Errors
+/// Those of the randomness.
+pub fn goes_back_along_the_trail(u: &mut Unstructured<'_>) -> Result<bool> {
+    let source = programs::generate(u, Options { allow_overrides: false, ..Options::default() })?;
+    let program = program(&source, |_| {});
+    let mut cell = Logged::new(u.arbitrary()?).steady();
+    let Ok(mut machine) = Machine::new(&program, &cell) else { return Ok(false) };
+    let mut watch = Watch(Trail::new(program.module(), obverse_workcell::Arm::joints(&cell)));
+    let mut digests = BTreeMap::new();
+    while machine.executed() < MAX_INSTRUCTIONS {
+        digests.insert(machine.state().steps(), machine.digest(&cell));
+        match machine.step(Direction::Forward, &mut cell, &mut watch) {
+            Ok(()) | Err(Stop::Raised { .. } | Stop::Due { .. }) => {}
+            Err(_) => break,
+        }
+    }
+    let mut trail = watch.0;
+    let mut is_compared = false;
+    while !trail.actions().is_empty() {
+        let index = u.choose_index(trail.actions().len())?;
+        let steps = trail.actions()[index].steps;
+        let stop = machine.reverse_to(Mark::at(steps), &mut cell, &mut ());
+        assert_eq!(stop, Stop::AtMark, "to action {index}, {steps} steps\n{source}");
+        let digest = machine.digest(&cell);
+        assert_eq!(Some(&digest), digests.get(&steps), "at action {index}\n{source}");
+        trail.cut(machine.state().steps());
+        assert_eq!(trail.actions().len(), index, "the trail behind action {index}\n{source}");
+        is_compared = true;
+    }
+    Ok(is_compared)
+}
+
+/// Under any strategy and with a fault anywhere, also on the way back, a run ends; no error is
+/// tried more often than may be; nothing moves after a stop unless it was released; and from where
+/// it ended the program's state goes back to the start, or to what cannot be taken back.
+///
+/// # Errors
+/// Those of the randomness.
+pub fn recovers_within_bounds(u: &mut Unstructured<'_>) -> Result<bool> {
+    let source = programs::generate(u, Options { allow_overrides: false, ..Options::default() })?;
+    let source = all_reversing(&source);
+    let names_faults: bool = u.arbitrary()?;
+    let program = program(&source, |module| {
+        if let (true, Some(error)) = (names_faults, module.errors.first_mut()) {
+            error.faults = vec![FaultName::ProtectiveStop];
+        }
+    });
+    let mut cell = Logged::new(u.arbitrary()?);
+    let fraction = f64::from(u.int_in_range(0_u8..=10)?) / 10.0;
+    cell.ledger.stop_at = Some((u.int_in_range(0..=40)?, fraction));
+    let strategy = *u.choose(&[
+        Strategy::Declared,
+        Strategy::Stop,
+        Strategy::Retry { times: 3 },
+        Strategy::BackUp { distance_m: 0.1, times: 2 },
+        Strategy::Restart { times: 2 },
+        Strategy::Explicit,
+        Strategy::Fixed { actions: 2 },
+        Strategy::Escalating,
+        Strategy::Learned,
+    ])?;
+    let mut operator = Releases(u.int_in_range(0..=2)?);
+    let Ok(mut machine) = Machine::new(&program, &cell) else { return Ok(false) };
+    let start = machine.digest(&cell);
+    let mut recovery = Recovery {
+        strategy,
+        bounds: Bounds { attempts: 4, ..Bounds::default() },
+        memory: &mut Memory::default(),
+        remembers: true,
+        person_s: 300.0,
+        seed: 0,
+        operator: &mut operator,
+        foresight: None,
+        incidents: Vec::new(),
+    };
+    let limits = Limits::instructions(20 * MAX_INSTRUCTIONS);
+    let ending = recover(&mut machine, limits, &mut cell, &mut recovery, &mut ());
+    let incidents = recovery.incidents;
+    let is_bounded = incidents.iter().all(|incident| incident.attempts.len() <= 4);
+    assert!(is_bounded, "{incidents:?}\n{source}");
+    let is_closed = incidents.iter().all(|incident| incident.outcome.is_some());
+    assert!(is_closed, "{incidents:?}\n{source}");
+    // What was done in place, or commanded beside the program, the world keeps.
+    let is_exact = !matches!(
+        strategy,
+        Strategy::Retry { .. } | Strategy::BackUp { .. } | Strategy::Restart { .. }
+    );
+    if ending == Ending::Budget {
+        return Ok(false);
+    }
+    cell.release();
+    cell.ledger.stop_at = None;
+    let back = drive(&mut machine, Direction::Reverse, Limits::NONE, &mut cell, &mut ());
+    if let Ending::Fault { fault: Fault::ForceLimit { .. }, .. } = back {
+        // Something is in the way of a motion that a force may stop going back.
+        return Ok(!incidents.is_empty());
+    }
+    let way = || format!("{strategy:?}, {ending:?}, back: {back:?}\n{source}");
+    assert!(matches!(back, Ending::AtStart | Ending::Refused(_)), "{}", way());
+    if back == Ending::AtStart && is_exact {
+        assert_eq!(machine.digest(&cell), start, "{}", way());
+    }
+    Ok(!incidents.is_empty())
+}
+
+/// The same program with every error recovered from by reversing.
+fn all_reversing(source: &str) -> String {
+    const CLAUSES: &str = "  recover by reversing escalating up to 3 actions, slower\n";
+    let mut lines = Vec::new();
+    let mut is_error = false;
+    for line in source.lines() {
+        is_error |= line.starts_with("error ");
+        if !is_error || line.starts_with("error ") {
+            lines.push(line.to_owned());
+        } else if line.starts_with('}') {
+            lines.push(format!("{CLAUSES}  then return to action\n}}"));
+        }
+        is_error &= !line.starts_with('}');
+    }
+    lines.join("\n")
+}
+
+fn program(source: &str, change: impl FnOnce(&mut Module)) -> Verified {
+    let compiled = compile("program.obv", source);
+    let Some(mut module) = compiled.module else {
+        panic!("it does not compile: {:#?}\n{source}", compiled.diagnostics)
+    };
+    change(&mut module);
+    match verify(module) {
+        Ok(program) => program,
+        Err(errors) => panic!("it does not verify: {errors:?}\n{source}"),
+    }
+}
+
+struct Releases(u32);
+
+impl Operator for Releases {
+    fn release(&mut self, _: &Fault) -> bool {
+        let is_left = self.0 > 0;
+        self.0 = self.0.saturating_sub(1);
+        is_left
+    }
+}
+
+struct Watch<'m>(Trail<'m>);
+
+impl Observer for Watch<'_> {
+    fn on_event(&mut self, event: &Event, cell: &dyn Workcell) {
+        self.0.note(event, cell);
+    }
+}

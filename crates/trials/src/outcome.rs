@@ -1,0 +1,87 @@
+//! How an assembly ended, as data that is the same whoever computed it and wherever.
+
+use crate::strategy::Strategy;
+use serde::{Deserialize, Serialize};
+
+/// How one assembly ended.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Ending {
+    /// The program ended and no error is pending.
+    Succeeded,
+    /// Recovery was given up, for a reason that is named, and the arm holds.
+    GivenUp,
+    /// The workcell did not do as commanded, and the program maps that to no error.
+    Fault,
+    /// The machine refuses to go on.
+    Trap,
+    /// As many instructions as were allowed have been run.
+    Limit,
+}
+
+/// An error that came up, and what was done about it.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Incident {
+    /// The error's name.
+    pub error: String,
+    /// Where it came up: file and line.
+    pub place: String,
+    /// How many actions it went back by at each attempt, in order; 0 is in place.
+    pub depths: Vec<u32>,
+    /// Whether the program went on past that place afterwards.
+    pub recovered: bool,
+    /// What truly was the matter, where the workcell can tell.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub cause: Option<String>,
+}
+
+/// What came of one assembly.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Outcome {
+    /// How it ended.
+    pub ending: Ending,
+    /// Why it ended so, if not by success: which bound was met, which fault.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub why: Option<String>,
+    /// How often something was tried again.
+    pub attempts: u32,
+    /// How long it took by the workcell's clock, in seconds.
+    pub makespan_s: f64,
+    /// How often a person gave the fresh command without which nothing moves after a stop.
+    pub releases: u32,
+    /// How long a person was busy with it on top of that, in seconds.
+    pub person_s: f64,
+    /// How many instructions were run or reversed.
+    pub instructions: u64,
+    /// The errors that came up, in order.
+    pub incidents: Vec<Incident>,
+}
+
+impl Outcome {
+    /// How long it took altogether, in seconds: the cell stands still while a person is at it.
+    #[must_use]
+    pub fn total_s(&self) -> f64 {
+        self.makespan_s + self.person_s
+    }
+
+    /// Whether a person had to come, to set it right or to release the arm.
+    #[must_use]
+    pub fn takes_a_person(&self) -> bool {
+        self.ending != Ending::Succeeded || self.releases > 0
+    }
+}
+
+/// What came of one assembly, and which it was.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Record {
+    /// Which assembly of the campaign, from 0.
+    pub run: u64,
+    /// What all chance in it follows from: `obverse run --seed`.
+    pub seed: u64,
+    /// How errors were answered.
+    pub strategy: Strategy,
+    /// What came of it.
+    #[serde(flatten)]
+    pub outcome: Outcome,
+}

@@ -1,0 +1,207 @@
+//! Counting what came of a campaign: by strategy, and by strategy and error.
+
+use crate::outcome::{Incident, Record};
+use crate::plan::Plan;
+use crate::statistics::{Interval, mean, mean_interval, quantile, wilson};
+use crate::strategy::Strategy;
+use serde_json::{Map, Value, json};
+use std::collections::BTreeMap;
+
+/// What came of a campaign.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Summary {
+    /// By strategy, in the order of the plan.
+    pub strategies: Vec<Tally>,
+}
+
+/// What came of all assemblies by a strategy.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Tally {
+    /// The strategy.
+    pub strategy: Strategy,
+    /// How many assemblies were made.
+    pub runs: u64,
+    /// In how many of them an error came up.
+    pub in_error: u64,
+    /// For how many a person had to come.
+    pub to_a_person: u64,
+    /// How often something was tried again.
+    pub attempts: u64,
+    /// All errors together.
+    pub all: Errors,
+    /// Each kind of error by itself.
+    pub kinds: Vec<Kind>,
+    /// How long each assembly took with the time of a person, in seconds, ascending.
+    pub makespans_s: Vec<f64>,
+}
+
+/// Errors of a kind: of a name, and of a true cause where the workcell tells it.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Kind {
+    /// The error's name.
+    pub error: String,
+    /// The true cause; none for all causes together.
+    pub cause: Option<String>,
+    /// How they went.
+    pub errors: Errors,
+}
+
+/// How errors went.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Errors {
+    /// How many came up.
+    pub count: u64,
+    /// After how many the program went on.
+    pub recovered: u64,
+    /// How many of those were recovered by going back how many actions, at the last attempt.
+    pub depths: BTreeMap<u32, u64>,
+}
+
+impl Errors {
+    fn add(&mut self, incident: &Incident) {
+        self.count += 1;
+        if incident.recovered {
+            self.recovered += 1;
+            if let Some(depth) = incident.depths.last() {
+                *self.depths.entry(*depth).or_default() += 1;
+            }
+        }
+    }
+
+    /// The share that was recovered; none of no errors.
+    #[must_use]
+    pub fn share(&self) -> Option<f64> {
+        (self.count > 0).then(|| self.recovered as f64 / self.count as f64)
+    }
+
+    /// Its Wilson interval at 95 %.
+    #[must_use]
+    pub fn interval(&self) -> Option<Interval> {
+        wilson(self.recovered, self.count)
+    }
+
+    /// How many actions a recovery went back by on average; none where nothing was gone back by.
+    #[must_use]
+    pub fn mean_depth(&self) -> Option<f64> {
+        let count: u64 = self.depths.values().sum();
+        let sum: u128 =
+            self.depths.iter().map(|(depth, n)| u128::from(*depth) * u128::from(*n)).sum();
+        (count > 0).then(|| sum as f64 / count as f64)
+    }
+
+    fn to_json(&self) -> Map<String, Value> {
+        let interval = self.interval();
+        let depths: Map<String, Value> =
+            self.depths.iter().map(|(depth, count)| (depth.to_string(), json!(count))).collect();
+        let fields = [
+            ("errors", json!(self.count)),
+            ("recovered", json!(self.recovered)),
+            ("recovered_share", json!(self.share())),
+            ("recovered_share_low", json!(interval.map(|interval| interval.low))),
+            ("recovered_share_high", json!(interval.map(|interval| interval.high))),
+            ("mean_depth", json!(self.mean_depth())),
+            ("depths", Value::Object(depths)),
+        ];
+        fields.into_iter().map(|(name, value)| (name.to_owned(), value)).collect()
+    }
+}
+
+/// What came of the records of a campaign, or of a part of it.
+#[must_use]
+pub fn summary(plan: &Plan, records: &[Record]) -> Summary {
+    let tally = |strategy: &Strategy| {
+        tally(*strategy, records.iter().filter(|record| record.strategy == *strategy))
+    };
+    Summary { strategies: plan.strategies.iter().map(tally).collect() }
+}
+
+fn tally<'r>(strategy: Strategy, records: impl Iterator<Item = &'r Record>) -> Tally {
+    let mut tally = Tally {
+        strategy,
+        runs: 0,
+        in_error: 0,
+        to_a_person: 0,
+        attempts: 0,
+        all: Errors::default(),
+        kinds: Vec::new(),
+        makespans_s: Vec::new(),
+    };
+    let mut kinds: BTreeMap<(&str, Option<&str>), Errors> = BTreeMap::new();
+    for Record { outcome, .. } in records {
+        tally.runs += 1;
+        tally.in_error += u64::from(!outcome.incidents.is_empty());
+        tally.to_a_person += u64::from(outcome.takes_a_person());
+        tally.attempts += u64::from(outcome.attempts);
+        tally.makespans_s.push(outcome.total_s());
+        for incident in &outcome.incidents {
+            tally.all.add(incident);
+            kinds.entry((&incident.error, None)).or_default().add(incident);
+            if let Some(cause) = &incident.cause {
+                kinds.entry((&incident.error, Some(cause))).or_default().add(incident);
+            }
+        }
+    }
+    tally.makespans_s.sort_by(f64::total_cmp);
+    let kind = |((error, cause), errors): ((&str, Option<&str>), Errors)| Kind {
+        error: error.to_owned(),
+        cause: cause.map(str::to_owned),
+        errors,
+    };
+    tally.kinds = kinds.into_iter().map(kind).collect();
+    tally
+}
+
+impl Tally {
+    /// The mean makespan, in seconds; none of no runs.
+    #[must_use]
+    pub fn makespan_mean_s(&self) -> Option<f64> {
+        mean(&self.makespans_s)
+    }
+
+    /// Where the mean makespan lies with 95 % confidence, in seconds.
+    #[must_use]
+    pub fn makespan_interval_s(&self) -> Option<Interval> {
+        mean_interval(&self.makespans_s)
+    }
+
+    /// The makespan that this share of the assemblies does not exceed, in seconds.
+    #[must_use]
+    pub fn makespan_quantile_s(&self, share: f64) -> Option<f64> {
+        quantile(&self.makespans_s, share)
+    }
+
+    fn to_json(&self) -> Value {
+        let interval = self.makespan_interval_s();
+        let mut object = Map::new();
+        let fields = [
+            ("strategy", json!(self.strategy)),
+            ("runs", json!(self.runs)),
+            ("in_error", json!(self.in_error)),
+            ("to_a_person", json!(self.to_a_person)),
+            ("attempts", json!(self.attempts)),
+            ("makespan_mean_s", json!(self.makespan_mean_s())),
+            ("makespan_mean_low_s", json!(interval.map(|interval| interval.low))),
+            ("makespan_mean_high_s", json!(interval.map(|interval| interval.high))),
+            ("makespan_p95_s", json!(self.makespan_quantile_s(0.95))),
+        ];
+        object.extend(fields.map(|(name, value)| (name.to_owned(), value)));
+        object.extend(self.all.to_json());
+        let kind = |kind: &Kind| {
+            let mut object = Map::new();
+            object.insert("error".to_owned(), json!(kind.error));
+            object.insert("cause".to_owned(), json!(kind.cause));
+            object.extend(kind.errors.to_json());
+            Value::Object(object)
+        };
+        object.insert("kinds".to_owned(), self.kinds.iter().map(kind).collect());
+        Value::Object(object)
+    }
+}
+
+impl Summary {
+    /// The same for machines.
+    #[must_use]
+    pub fn to_json(&self) -> Value {
+        self.strategies.iter().map(Tally::to_json).collect()
+    }
+}
