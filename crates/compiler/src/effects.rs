@@ -34,7 +34,7 @@ struct Effect {
     for_caller: Vec<ErrorId>,
     /// The errors that it responds to itself.
     own: Vec<ErrorId>,
-    /// Those of both that are thrown, by it or by an advanced move of it: not raised by the workcell.
+    /// Those of both that are thrown, by it or by an advanced move of it, not by the workcell.
     thrown: Vec<ErrorId>,
     /// What it calls, and where.
     calls: Vec<(FunctionId, Span)>,

@@ -665,6 +665,7 @@ impl Body<'_, '_> {
             0 => drop(self.code.push(op::ErrorRaise { error })),
             3 => drop(self.code.push(op::ErrorDue { error })),
             1 => drop(self.code.push(op::ErrorClear { error })),
+            2 => drop(self.code.push(op::ErrorDue { error })),
             _ => {
                 self.code.push(op::PushBool { value: Level::High });
                 self.code.push(op::Require { prefix: P, reason: ReasonId(0) });

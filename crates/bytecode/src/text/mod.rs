@@ -41,9 +41,10 @@
 //!                                        `item N`, `tool N`, `output "NAME" N`, `input "NAME" N`
 //! ```
 //!
-//! DEPTH is `fixed`, `escalating`, `doubling` or `learned`; PATTERN is `spiral` or `random`; EXTENT is `actions N`, `checkpoint NAME` or
-//! `sequence`. A table is in the order of its lines, which may stand anywhere. A name is a word or
-//! quoted text; `#7` is the seventh of a table, counted from nought, whatever its name, and `x#7`
+//! DEPTH is `fixed`, `escalating`, `doubling` or `learned`; PATTERN is `spiral` or `random`; EXTENT
+//! is `actions N`, `checkpoint NAME` or `sequence`. A table is in the order of its lines, which may
+//! stand anywhere. A name is a word or quoted text; `#7` is the seventh of a table, counted from
+//! nought, whatever its name, and `x#7`
 //! the same with its name. `push.const 0.25` and `barrier "why"` add to their tables what is not
 //! yet there. The `prefix` of an instruction is counted, never written. A join may leave out which
 //! jump it is of if one alone names it. `;` begins a comment.

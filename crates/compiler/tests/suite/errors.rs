@@ -300,6 +300,7 @@ fn reversal_given_up_calls_otherwise() {
         "
         enter
         error.raise e
+        error.due e
         call fix
         error.clear e
         push.const 1.0

@@ -100,9 +100,9 @@ macro_rules! warnings {
                sequence main { checkpoint ready if input 1 { throw jam } }"
 
     FaultNeverMet "W0404" "a fault that nothing in the program can meet"
-        why "An error names a fault that only motions meet, and the program moves nothing; or there \
-             is nothing at all that could fail. The error is raised by nothing. Leave the fault \
-             out; or what moves the arm is missing."
+        why "An error names a fault that only motions meet, and the program moves nothing; or \
+             there is nothing at all that could fail. The error is raised by nothing. Leave the \
+             fault out; or what moves the arm is missing."
         wrong "error jammed { on collision }\n\
                sequence main { wait 1 s }"
         right "error stopped { on emergency stop }\n\

@@ -222,7 +222,8 @@ fn what_cleans_up_is_a_block() {
 #[test]
 fn an_advanced_move_has_clauses() {
     let source = "advanced move insert {
-        requires holding else throw lost  distance 300 mm forward in tcp  stop if force > 5 N  speed very slow
+        requires holding else throw lost  distance 300 mm forward in tcp
+        stop if force > 5 N  speed very slow
         succeeds if distance > 200 mm
         on success { return to initial position }
         on failure { repeat with perturbation 3 times; repeat with perturbation 2 mm 4 times
