@@ -1,6 +1,6 @@
 //! Whatever is stopped wherever, and by whatever strategy it is met: a run ends in success or in a
-//! give-up that has a name, with the arm held; nothing goes back over what cannot be taken back; and
-//! where it ended it can be gone back from.
+//! give-up that has a name, with the arm held; nothing goes back over what cannot be taken back;
+//! and where it ended it can be gone back from.
 //!
 //! Every program is run with a stop of every kind at drawn acts, in either direction. `SAFE_RUNS`
 //! sets how many runs there are of each program, over all strategies.
@@ -64,7 +64,8 @@ fn load(path: &Path) -> Program {
     let text = std::fs::read_to_string(path).unwrap();
     let mut files = Folder::read(folder);
     let compiled = compile_files(&name, &text, &mut files);
-    let mut module = compiled.module.unwrap_or_else(|| panic!("{name}: {:#?}", compiled.diagnostics));
+    let mut module =
+        compiled.module.unwrap_or_else(|| panic!("{name}: {:#?}", compiled.diagnostics));
     // Where a program has an error and names no fault, its first one is raised by some.
     let names_faults = module.errors.iter().any(|error| !error.faults.is_empty());
     if let (false, Some(error)) = (names_faults, module.errors.first_mut()) {
@@ -127,7 +128,8 @@ fn run(program: &Program, number: u64, memory: &mut Memory) {
         stops.push((kind, plan));
     }
     let releases = draw(2) % 4;
-    let case = || format!("{} {number}: {strategy:?}, {stops:?}, {releases} releases", program.name);
+    let case =
+        || format!("{} {number}: {strategy:?}, {stops:?}, {releases} releases", program.name);
     let mut machine = Machine::new(&program.verified, &sim).unwrap();
     let mut guard = Guard::default();
     let mut recovery = Recovery {
@@ -163,7 +165,9 @@ fn go_back(machine: &mut Machine<'_>, sim: &mut Sim, case: &dyn Fn() -> String) 
         match drive(machine, Direction::Reverse, Limits::NONE, sim, &mut ()) {
             Ending::AtStart | Ending::Refused(_) => return,
             // What stands in the way in the world, where the arm was moved in place or by hand.
-            Ending::Fault { fault: Fault::Collision { .. } | Fault::ForceLimit { .. }, .. } => return,
+            Ending::Fault { fault: Fault::Collision { .. } | Fault::ForceLimit { .. }, .. } => {
+                return;
+            }
             Ending::Fault { .. } if blocked < 8 => blocked += 1,
             other => panic!("{}: back: {other:?}", case()),
         }

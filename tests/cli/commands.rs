@@ -259,9 +259,11 @@ fn all_chance_follows_from_the_seed() {
 #[test]
 fn exit_code_one_is_for_runs_that_end_otherwise() {
     let bench = Bench::new("exit_codes");
-    let error = bench.ends(1, &["run", "--json", "reversal_policy.obv", "--seed", "0"]).summary();
-    assert_eq!(error["outcome"], "unhandled_error");
+    let stop = ["run", "--json", "reversal_policy.obv", "--seed", "0", "--strategy", "stop"];
+    let error = bench.ends(1, &stop).summary();
+    assert_eq!(error["outcome"], "given_up");
     assert_eq!(error["errors"], json!(["peg_meets_rim"]));
+    assert_eq!(error["incidents"][0]["outcome"], "strategy");
     let limit = bench.ends(1, &["run", "--json", "warm_up.obv", "--limit", "20"]).summary();
     assert_eq!(limit["outcome"], "budget");
     bench.write(
@@ -274,7 +276,7 @@ fn exit_code_one_is_for_runs_that_end_otherwise() {
     let fault = bench.ends(1, &["run", "--json", "far.obv"]).summary();
     assert_eq!((&fault["outcome"], &fault["stopped_at"]["line"]), (&json!("fault"), &json!(2)));
     // What ended with an error goes back all the same, and that is what `back` is asked for.
-    bench.ends(0, &["back", "reversal_policy.obv", "--seed", "0"]);
+    bench.ends(0, &["back", "reversal_policy.obv", "--seed", "0", "--strategy", "stop"]);
 }
 
 #[test]

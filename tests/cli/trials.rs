@@ -6,7 +6,7 @@ use serde_json::Value;
 
 /// A campaign of so many runs in which some assemblies fail, with further arguments.
 fn trials<'a>(runs: &'a str, more: &[&'a str]) -> Vec<&'a str> {
-    let first = ["trials", "peg_in_hole.obv", "--runs", runs, "--strategy", "stop,explicit"];
+    let first = ["trials", "reversal_policy.obv", "--runs", runs, "--strategy", "stop,explicit"];
     first.iter().chain(more).copied().collect()
 }
 
@@ -20,11 +20,11 @@ fn a_campaign_tells_each_run_with_its_seed_and_sums_up() {
     assert_eq!(runs.len(), 120);
     let failed = runs.iter().find(|run| run["ending"] == "given_up").expect("some are hard");
     assert_eq!(failed["strategy"], "stop");
-    assert_eq!(failed["incidents"][0]["error"], "peg_not_inserted");
+    assert_eq!(failed["incidents"][0]["error"], "peg_meets_rim");
     // The seed of a line is that of the same run by itself.
     let seed = failed["seed"].to_string();
-    let same = bench.run(&["run", "peg_in_hole.obv", "--seed", &seed, "--json"]);
-    assert!(same.stdout.contains("peg_not_inserted"), "{}", same.stdout);
+    let same = bench.run(&["run", "reversal_policy.obv", "--seed", &seed, "--json"]);
+    assert!(same.stdout.contains("peg_meets_rim"), "{}", same.stdout);
     let summary = ran.summary();
     let stop = &summary["strategies"][0];
     let left = runs.iter().filter(|run| run["strategy"] == "stop" && run["ending"] == "given_up");
@@ -137,7 +137,8 @@ fn on_a_full_disk_what_was_done_is_kept() {
 fn wrong_words_are_refused() {
     let bench = Bench::new("trials_wrong");
     let refuses = |more: &[&str], words: &[&str]| {
-        let all: Vec<&str> = ["trials", "peg_in_hole.obv"].iter().chain(more).copied().collect();
+        let all: Vec<&str> =
+            ["trials", "reversal_policy.obv"].iter().chain(more).copied().collect();
         bench.refuses(&all, words);
     };
     refuses(&["--runs", "0"], &["--runs is 0"]);
@@ -154,7 +155,7 @@ fn wrong_words_are_refused() {
     refuses(&["--resume"], &["--out"]);
     refuses(&["--merge", "x"], &["--merge"]);
     refuses(&["--out", "none/x"], &["no folder none"]);
-    refuses(&["--out", "peg_in_hole.obv"], &["peg_in_hole.obv"]);
+    refuses(&["--out", "reversal_policy.obv"], &["reversal_policy.obv"]);
     refuses(&["--plots", "none/x"], &["none/x: ", "cannot be made"]);
     bench.refuses(&["trials"], &["PROGRAM"]);
     let messages = bench.refuses_as_json(&["trials", "gone.obv", "--json"]);

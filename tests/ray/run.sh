@@ -11,7 +11,7 @@ if ! python3 -c 'import ray' 2>/dev/null; then
 fi
 folder=$(mktemp -d)
 trap 'rm -rf "$folder"' EXIT
-campaign="$project/programs/peg_in_hole.obv --runs 400 --strategy stop,explicit --seed 3"
+campaign="$project/programs/reversal_policy.obv --runs 400 --strategy stop,explicit --seed 3"
 
 on_ray() {
     # The words of the campaign are words.
@@ -58,7 +58,7 @@ cmp "$folder/whole" "$folder/fragile_run"
 echo "passed: what is done is not done twice"
 
 # A shard of another campaign is refused, and kept.
-campaign="$project/programs/peg_in_hole.obv --runs 400 --strategy stop,explicit --seed 4"
+campaign="$project/programs/reversal_policy.obv --runs 400 --strategy stop,explicit --seed 4"
 rm "$folder/fragile_run"
 if on_ray "$folder/fragile_run" "$obverse" >/dev/null 2>"$folder/said"; then
     echo "failed: shards of another campaign were taken"
