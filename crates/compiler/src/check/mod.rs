@@ -16,6 +16,7 @@ mod motion;
 mod names;
 mod operators;
 mod program;
+mod raise;
 mod reverse;
 mod signals;
 mod statement;

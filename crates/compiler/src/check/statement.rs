@@ -5,7 +5,6 @@ use super::expression::{MAX_COMPUTED, Need};
 use super::frame::{Around, NamedPosition};
 use super::names::{Found, Meaning, Symbol};
 use super::operators::binary;
-use crate::response::goes_on_after_throw;
 use crate::tree::{
     Block, Expression, ExpressionKind, Place, SettingValue, Statement, StatementKind,
 };
@@ -526,33 +525,6 @@ impl<'s> Checker<'s> {
             self.lose_position("this block has a reverse of its own", header);
         }
         checked
-    }
-
-    /// `requires CONDITION else throw NAME`
-    fn requires(
-        &mut self,
-        condition: &ast::Expression<'s>,
-        error: Name<'s>,
-        span: Span,
-    ) -> Option<StatementKind> {
-        let condition = self.value(condition, &Need::new(ValueType::Bool, "`requires`"));
-        self.warn_of_constant(&condition, "leave the statement out, or ask for a reading");
-        self.lose_position("recovering from this error may move the arm", span);
-        let is_error = |meaning| matches!(meaning, Meaning::Error(_));
-        match self.resolve(error, "an error", is_error)? {
-            Meaning::Error(id) => Some(StatementKind::Requires(condition, id)),
-            _ => None,
-        }
-    }
-
-    fn throw(&mut self, name: Name<'s>, span: Span) -> Checked {
-        if self.movers.may_move_after(name.value) {
-            self.lose_position("recovering from this error may move the arm", span);
-        }
-        let is_error = |meaning| matches!(meaning, Meaning::Error(_));
-        let Meaning::Error(id) = self.resolve(name, "an error", is_error)? else { return None };
-        let goes_on = goes_on_after_throw(self.module.errors.get(id.index())?);
-        Some((self.done(StatementKind::Throw(id), span), goes_on))
     }
 }
 
