@@ -36,8 +36,8 @@ const OTHERWISE: &str = "\
 otherwise: where a guarded move is stopped elsewhere, or the gripper or an input is not as planned";
 
 const GIVEN_UP: &str = "\
-the check was given up: there are too many ways through the program, or too many motions, to look
-at all of them; that a move looks fine says nothing";
+the check was given up: there are too many ways through the program, rounds of a loop, or motions,
+to look at all of them; that a move looks fine says nothing";
 
 /// How wide the column of lines is.
 fn line_columns(module: &Module, report: &Report) -> usize {

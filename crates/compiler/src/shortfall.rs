@@ -114,6 +114,7 @@ fn chain(found: Diagnostic, source: Source<'_>, way: &Way) -> Diagnostic {
             Link::Within(pc) => (pc, "going back leads into this call"),
             Link::InPlaceOf(pc) => (pc, "run in place of this"),
             Link::Beside(pc) => (pc, "another branch of this may have run"),
+            Link::Again(pc) => (pc, "begun again, after a round of this"),
         };
         // The start calls the first sequence without a word.
         let is_written = module.function_at(pc).is_some_and(|function| function > 0);

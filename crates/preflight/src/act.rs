@@ -8,7 +8,7 @@ use crate::explore::{Course, Explorer};
 use crate::reason::Reason;
 use crate::state::{State, Word};
 use crate::trace::{Deed, Node};
-use crate::verdict::Verdict;
+use crate::verdict::{Verdict, because};
 use crate::worlds::WorldId;
 use obverse_geometry::Pose;
 use obverse_isa::{Family, Instr, KeyframeId, LocalId, Setting, SpeedId};
@@ -295,7 +295,15 @@ impl Explorer<'_> {
             Course::Forward => Direction::Forward,
             Course::InReverse => Direction::Reverse,
         };
-        self.notes.add(pc, direction, &answer.verdict, &calls, state.is_planned);
+        let since = state.since;
+        let verdict = because(&answer.verdict, since);
+        self.notes.add(pc, direction, &verdict, &calls, state.is_planned);
+        state.since = match verdict.grade() {
+            grade if grade.is_wrong() => Some(Reason::AfterFailure),
+            // Where it leads is what would have come of it otherwise, too.
+            _ if self.worlds.is_known(answer.after) => None,
+            _ => since,
+        };
         let is_guarded = command.guard != Guard::None;
         let number = |of: Option<f64>| of.map(f64::to_bits);
         state.distance = number(answer.report.map(|report| report.distance_m));
@@ -305,7 +313,7 @@ impl Explorer<'_> {
         let before = state.world;
         let arrive = |explorer: &mut Self, mut state: State, after: WorldId| {
             let is_planned = state.is_planned;
-            let deed = Deed::Move { pc, back, calls: calls.clone(), is_planned };
+            let deed = Deed::Move { pc, back, calls: calls.clone(), is_planned, since };
             let from = vec![state.last];
             state.last = explorer.trace.add(Node { deed, before, after, from });
             state.world = after;

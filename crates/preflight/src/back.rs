@@ -10,6 +10,7 @@ use crate::command::Aim;
 use crate::explore::{Course, Explorer};
 use crate::state::{Frame, State};
 use crate::trace::{Deed, Node, NodeId};
+use crate::verdict::because;
 use crate::worlds::WorldId;
 use obverse_isa::FunctionId;
 use obverse_vm::Direction;
@@ -57,10 +58,10 @@ impl Explorer<'_> {
         let (mut before, mut behind) = (node.before, node.from);
         let arrived = match node.deed {
             Deed::Begin | Deed::Never => return,
-            Deed::Move { pc, back: command, calls, is_planned } => {
+            Deed::Move { pc, back: command, calls, is_planned, since } => {
                 let answer = self.worlds.ask(back.from, &command);
-                let verdict = &answer.verdict;
-                self.notes.add(pc, Direction::Reverse, verdict, &calls, is_planned);
+                let verdict = because(&answer.verdict, since);
+                self.notes.add(pc, Direction::Reverse, &verdict, &calls, is_planned);
                 vec![answer.after]
             }
             _ if restores => return,

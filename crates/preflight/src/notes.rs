@@ -43,6 +43,8 @@ struct Finding {
 struct Tally {
     visits: usize,
     not_wrong: usize,
+    /// What was found, each reason once.
+    reasons: Vec<Reason>,
     first: Vec<Finding>,
 }
 
@@ -76,11 +78,25 @@ impl Notes {
         let tally = self.tallies.entry((pc, direction == Direction::Reverse)).or_default();
         tally.visits += 1;
         tally.not_wrong += usize::from(!verdict.grade().is_wrong());
+        if !tally.reasons.contains(&verdict.reason) {
+            tally.reasons.push(verdict.reason);
+        }
         let finding = Finding { verdict: verdict.clone(), calls: calls.clone(), is_planned };
         let rank = finding.rank();
         if tally.first.iter().all(|known| known.rank() != rank) {
             tally.first.push(finding);
         }
+    }
+
+    /// Whether something would be known of a move if more rounds of a loop were followed.
+    pub(crate) fn lacks_rounds(&self) -> bool {
+        let is_lacking = |tally: &Tally| {
+            let mut not_known = tally.reasons.iter().filter(|one| one.grade() == Grade::NotKnown);
+            not_known.clone().any(|reason| *reason == Reason::TooManyRounds)
+                && not_known
+                    .all(|one| matches!(one, Reason::TooManyRounds | Reason::AfterFailure))
+        };
+        self.tallies.values().any(is_lacking)
     }
 
     /// What comes of all visits of a move, if there were any.

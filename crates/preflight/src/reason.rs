@@ -211,4 +211,12 @@ reasons! {
     LongContact "P0610" NotKnown "it moves in contact for longer than is looked at"
         "Something touches all along the way, and the check looks at the first part of it alone. \
          Does the arm stand free of everything where the move begins?"
+    AfterFailure "P0611" NotKnown "a move before it fails"
+        "On the way here a move ends with a fault, so that no run comes here that way, and where \
+         the arm would stand is not known.\n\nMend that move first; then this one is looked at."
+    TooManyRounds "P0612" NotKnown "the check followed 512 rounds, and there are more"
+        "The check follows a loop round by round as long as there are few, and then takes all \
+         further rounds together. What this move does depends on how many there were. The check as \
+         a whole then counts as not done.\n\nA move to a named joint configuration in each round \
+         makes it known where the arm stands; or repeat less often."
 }

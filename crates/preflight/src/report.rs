@@ -18,7 +18,7 @@ use obverse_workcell::Items;
 pub struct Report {
     /// Every move, in the order of the code.
     pub moves: Vec<MoveReport>,
-    /// Whether all ways were followed; if not, nothing may be concluded from moves that look fine.
+    /// Whether all ways were followed, round by round where it matters; if not, nothing may be concluded from moves that look fine.
     pub is_complete: bool,
 }
 
@@ -95,15 +95,17 @@ pub fn check(program: &Verified, cell: &Cell) -> Result<Report, Vec<LinkError>> 
         peak_force: Some(0),
         is_planned: true,
         is_certain: true,
+        since: None,
         blocks: Vec::new(),
         forks: Vec::new(),
         last: begin,
     };
     explorer.follow(start, Course::Forward);
     let went_back = explorer.go_back();
-    let is_complete = went_back && !explorer.is_given_up();
+    let is_followed = went_back && !explorer.is_given_up();
     // Of a move that nobody came to in a check that was given up, nothing can be said.
-    let unseen = if is_complete { Reason::NoWay } else { Reason::TooMany };
+    let unseen = if is_followed { Reason::NoWay } else { Reason::TooMany };
+    let is_complete = is_followed && !explorer.notes.lacks_rounds();
     Ok(Report { moves: moves(module, &explorer, unseen), is_complete })
 }
 

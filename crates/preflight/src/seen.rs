@@ -6,12 +6,14 @@
 //! the values in which they differ, and at last the workcell is forgotten, too. A state can forget
 //! only so often, so that this ends.
 
+use crate::reason::Reason;
 use crate::state::State;
 use crate::trace::{Deed, Node, NodeId, Trace};
 use crate::worlds::WorldId;
 use std::collections::HashMap;
 
-/// How many states of one place stay apart where all decisions are known.
+/// How many states of one place stay apart where all decisions are known. [`Reason::TooManyRounds`]
+/// names it, too.
 const MAX_CERTAIN: usize = 512;
 /// The same where ways part by what is only known when the program runs.
 const MAX_UNCERTAIN: usize = 16;
@@ -56,6 +58,9 @@ impl Seen {
             let alike = visits.iter().rev().find(|visit| is_alike(visit, &state));
             let other = alike.or_else(|| visits.last().filter(|_| state.world == nothing_known));
             if let Some(other) = other {
+                if state.is_certain {
+                    state.since = Some(Reason::TooManyRounds);
+                }
                 state.forget_differences(&other.state);
                 from.push(other.node);
             }

@@ -3,6 +3,7 @@
 //! A word is known or not; the workcell is one of those that [`Worlds`](crate::worlds) keeps. A
 //! state stands for every run whose values are those that it knows.
 
+use crate::reason::Reason;
 use crate::tasks::Fork;
 use crate::trace::NodeId;
 use crate::worlds::WorldId;
@@ -42,6 +43,9 @@ pub(crate) struct State {
     pub(crate) is_planned: bool,
     /// Whether every decision so far was known, so that this is the only way.
     pub(crate) is_certain: bool,
+    /// Why this way is not followed as it would be run: only so many rounds of a loop are, and no
+    /// run comes past a move that fails. What is not known from then on is not known for this reason.
+    pub(crate) since: Option<Reason>,
     /// The blocks with a reverse of their own that are open.
     pub(crate) blocks: Vec<NodeId>,
     /// The forks that are open, outermost first.

@@ -1,6 +1,7 @@
 //! What a program does on its ways forward, in the form in which it is gone back over.
 
 use crate::command::Command;
+use crate::reason::Reason;
 use crate::state::State;
 use crate::worlds::WorldId;
 use obverse_isa::FunctionId;
@@ -24,7 +25,7 @@ pub(crate) enum Deed {
     /// Ways through the program met.
     Merge,
     /// A motion, which goes back as this one says.
-    Move { pc: u32, back: Command, calls: Rc<[u32]>, is_planned: bool },
+    Move { pc: u32, back: Command, calls: Rc<[u32]>, is_planned: bool, since: Option<Reason> },
     /// The gripper's output was set.
     Output,
     /// The gripper's output was changed.

@@ -4,6 +4,7 @@ use crate::reason::{Grade, Reason};
 use obverse_sim::Plan;
 use obverse_sim::plan::BodyKind;
 use obverse_workcell::{Fault, FaultKind, Motion, Path};
+use std::rc::Rc;
 
 /// What was found out about a motion.
 #[derive(Clone, Debug, PartialEq)]
@@ -43,6 +44,19 @@ impl Verdict {
     pub fn grade(&self) -> Grade {
         self.reason.grade()
     }
+}
+
+/// What was found out on a way that is not followed as it would be run, for this reason.
+pub(crate) fn because(found: &Rc<Verdict>, since: Option<Reason>) -> Rc<Verdict> {
+    let is_so_since = match found.reason {
+        Reason::StartNotKnown
+        | Reason::GoalNotKnown
+        | Reason::SettingNotKnown
+        | Reason::HeldNotKnown => true,
+        // It was looked at; but where a move has failed, the arm may stand where it cannot.
+        _ => found.grade() == Grade::NotKnown && since == Some(Reason::AfterFailure),
+    };
+    since.filter(|_| is_so_since).map_or_else(|| found.clone(), |reason| Verdict::new(reason).into())
 }
 
 /// What a fault says of the motion that would meet it.

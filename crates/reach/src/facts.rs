@@ -6,6 +6,7 @@
 //! functions call themselves.
 
 use crate::edges::Edges;
+use crate::flag::VALUES;
 use crate::graph::{Graph, NOWHERE, Node, NodeId};
 
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -96,15 +97,15 @@ impl Facts {
 }
 
 impl Graph {
-    /// Of a call: what was before it, and what is at the end of what it calls, by the flag before.
+    /// Of a call: what was before it, and what is at the end of what it calls, by the flags before.
     pub(crate) fn passages(&self, call: NodeId) -> impl Iterator<Item = (NodeId, NodeId)> + '_ {
         let passages = match self.nodes[call as usize] {
-            Node::Call { before, contexts, flag } => [0, 1].map(|at| {
+            Node::Call { before, contexts, flags } => std::array::from_fn(|at| {
                 let context = self.contexts.get(contexts[at] as usize)?;
-                let exit = context.exits[usize::from(flag)];
+                let exit = context.exits[usize::from(flags)];
                 (before[at] != NOWHERE && exit != NOWHERE).then_some((before[at], exit))
             }),
-            _ => [None; 2],
+            _ => [None; VALUES],
         };
         passages.into_iter().flatten()
     }

@@ -3,13 +3,13 @@
 //!
 //! A function is one pass over its code, since every join names its jump, and a row of instructions
 //! between two nodes shares the node before it. So the graph is linear in the program, and the sets
-//! of horizons, which are not, need not be written down. A function that is called while the
-//! [`flag`](crate::flag) is set is another *context* of it; so is each branch of a fork, which
+//! of horizons, which are not, need not be written down. A function that is called while
+//! a [`flag`](crate::flag) is set is another *context* of it; so is each branch of a fork, which
 //! [`fork`] adds. Knows nothing of what stops.
 
 mod fork;
 
-use crate::flag::{Flag, Touch};
+use crate::flag::{Flag, Flags, Touch, VALUES};
 use crate::turns::Turns;
 use obverse_bytecode::Module;
 use obverse_isa::{Instr, Label};
@@ -19,11 +19,11 @@ pub(crate) type NodeId = u32;
 /// Stands for no node: a point that is not come to.
 pub(crate) const NOWHERE: NodeId = NodeId::MAX;
 
-/// By the value of the flag: a node, or nowhere.
-pub(crate) type ByFlag = [NodeId; 2];
+/// By the value of the flags: a node, or nowhere.
+pub(crate) type ByFlags = [NodeId; VALUES];
 
 /// The state of a point that is not come to.
-const UNREACHED: ByFlag = [NOWHERE; 2];
+const UNREACHED: ByFlags = [NOWHERE; VALUES];
 
 /// What was there before a node.
 #[derive(Clone, Copy, Debug)]
@@ -42,12 +42,12 @@ pub(crate) enum Node {
     Horizon { before: NodeId },
     /// Two ways meet, or one comes here.
     Merge { sources: [Option<Source>; 2] },
-    /// Behind a call: by the flag before it, what was there, and the context that is called; with
-    /// the flag that it returns with.
-    Call { before: ByFlag, contexts: [u32; 2], flag: bool },
+    /// Behind a call: by the flags before it, what was there, and the context that is called; with
+    /// the flags that it returns with.
+    Call { before: ByFlags, contexts: [u32; VALUES], flags: u8 },
     /// Behind a block with a reverse of its own, which is passed over: what was before it, and
     /// what was at its end.
-    Block { before: ByFlag, inside: NodeId },
+    Block { before: ByFlags, inside: NodeId },
     /// Behind a fork of which all branches have been run through.
     Join { fork: u32 },
     /// Behind a fork that was left: what was there in the branch that it was left from.
@@ -58,12 +58,12 @@ pub(crate) enum Node {
     Around { context: u32 },
 }
 
-/// A function, called with the flag at a value; or a branch of a fork in it.
+/// A function, called with the flags at a value; or a branch of a fork in it.
 #[derive(Clone, Debug)]
 pub(crate) struct Context {
     pub(crate) function: usize,
-    /// What is there at its end, by the flag.
-    pub(crate) exits: ByFlag,
+    /// What is there at its end, by the flags.
+    pub(crate) exits: ByFlags,
     /// The fork that it is a branch of.
     pub(crate) fork: Option<u32>,
     /// The node of [`Node::Anywhere`]; nowhere in a module without forks, as the next.
@@ -107,7 +107,7 @@ pub(crate) struct Entrance {
 pub(crate) struct Replacement {
     /// The end of the block.
     pub(crate) pc: u32,
-    pub(crate) before: ByFlag,
+    pub(crate) before: ByFlags,
     pub(crate) inside: NodeId,
     pub(crate) function: usize,
 }
@@ -120,36 +120,36 @@ pub(crate) struct Graph {
     /// The context of each node.
     pub(crate) owners: Vec<u32>,
     pub(crate) contexts: Vec<Context>,
-    /// The contexts of each function, by the flag.
-    pub(crate) by_function: Vec<[Option<u32>; 2]>,
+    /// The contexts of each function, by the flags.
+    pub(crate) by_function: Vec<[Option<u32>; VALUES]>,
     pub(crate) entrances: Vec<Entrance>,
     pub(crate) replacements: Vec<Replacement>,
     pub(crate) forks: Vec<Fork>,
-    /// What is come to only if a turn may end while the flag is set.
+    /// What is come to only if a turn may end while a flag is set.
     pub(crate) set_at_turns: Vec<NodeId>,
-    /// What is there behind each instruction of each context, by the flag.
-    points: Vec<ByFlag>,
+    /// What is there behind each instruction of each context, by the flags.
+    points: Vec<ByFlags>,
 }
 
 impl Graph {
     /// The graph of a module that keeps the rules of the verifier; `stops` says which instructions
-    /// are horizons, and `turns` what is known of the flag where they end.
+    /// are horizons, and `turns` what is known of the flags where they end.
     pub(crate) fn of(module: &Module, stops: &dyn Fn(&Instr) -> bool, turns: &Turns) -> Self {
         let graph = Self {
             nodes: Vec::new(),
             pcs: Vec::new(),
             owners: Vec::new(),
             contexts: Vec::new(),
-            by_function: vec![[None; 2]; module.functions.len()],
+            by_function: vec![[None; VALUES]; module.functions.len()],
             entrances: Vec::new(),
             replacements: Vec::new(),
             forks: Vec::new(),
             set_at_turns: Vec::new(),
             points: Vec::new(),
         };
-        let mut builder = Builder { module, stops, turns, flag: Flag::of(module), graph };
+        let mut builder = Builder { module, stops, turns, flags: Flags::of(module), graph };
         if !module.functions.is_empty() {
-            builder.context(0, false);
+            builder.context(0, 0);
         }
         let mut done = 0;
         while let Some(context) = builder.graph.contexts.get(done) {
@@ -171,8 +171,8 @@ impl Graph {
         &self.entrances[first..first + count]
     }
 
-    /// What is there before an instruction, in a context that holds it: by the flag.
-    pub(crate) fn before(&self, module: &Module, context: u32, pc: u32) -> ByFlag {
+    /// What is there before an instruction, in a context that holds it: by the flags.
+    pub(crate) fn before(&self, module: &Module, context: u32, pc: u32) -> ByFlags {
         let context = &self.contexts[context as usize];
         let first = module.functions[context.function].first;
         // Nothing stands before the first instruction, which is landed on.
@@ -190,18 +190,18 @@ struct Builder<'m> {
     module: &'m Module,
     stops: &'m dyn Fn(&Instr) -> bool,
     turns: &'m Turns,
-    flag: Flag,
+    flags: Flags,
     graph: Graph,
 }
 
 impl Builder<'_> {
-    /// The context of a function that is called with the flag at a value.
-    fn context(&mut self, function: usize, flag: bool) -> u32 {
-        let known = self.graph.by_function[function][usize::from(flag)];
+    /// The context of a function that is called with the flags at a value.
+    fn context(&mut self, function: usize, flags: usize) -> u32 {
+        let known = self.graph.by_function[function][flags];
         known.unwrap_or_else(|| {
             let first = self.module.functions[function].first;
             let index = self.new_context(function, first, None);
-            self.graph.by_function[function][usize::from(flag)] = Some(index);
+            self.graph.by_function[function][flags] = Some(index);
             index
         })
     }
@@ -224,10 +224,11 @@ impl Builder<'_> {
         let function = self.graph.contexts[context as usize].function;
         let (first, end) =
             (self.module.functions[function].first, self.module.functions[function].end);
-        let is_set = self.graph.by_function[function][1] == Some(context);
+        let contexts = &self.graph.by_function[function];
+        let flags = contexts.iter().position(|known| *known == Some(context)).unwrap_or(0);
         let points = self.graph.points.len();
         let mut entry = UNREACHED;
-        entry[usize::from(is_set)] = self.node(context, first, Node::Entry { context });
+        entry[flags] = self.node(context, first, Node::Entry { context });
         self.graph.points.push(entry);
         let (jumps_back, forks) = (Vec::new(), Vec::new());
         let mut pass = Pass { context, points, first, jumps_back, forks, blocks: 0 };
@@ -238,8 +239,8 @@ impl Builder<'_> {
             }
             self.graph.points.push(state);
         }
-        for (node, flag, from) in std::mem::take(&mut pass.jumps_back) {
-            let came = self.jumped(&pass, from)[flag];
+        for (node, flags, from) in std::mem::take(&mut pass.jumps_back) {
+            let came = self.jumped(&pass, from)[flags];
             if let Node::Merge { sources } = &mut self.graph.nodes[node as usize] {
                 sources[1] = (came != NOWHERE).then_some(Source { node: came, until: from });
             }
@@ -259,7 +260,7 @@ impl Builder<'_> {
     }
 
     /// What is there behind an instruction.
-    fn step(&mut self, pass: &mut Pass, pc: u32) -> ByFlag {
+    fn step(&mut self, pass: &mut Pass, pc: u32) -> ByFlags {
         let instr = self.module.code[pc as usize];
         let before = self.point(pass, pc - 1);
         if (self.stops)(&instr) {
@@ -283,20 +284,16 @@ impl Builder<'_> {
             Instr::ForkNext {} => self.fork_next(pass, pc, before),
             Instr::ForkJoin { .. } => self.fork_join(pass, pc, before),
             Instr::ForkLeave { .. } => fork::leave(pass, pc),
-            _ => match (instr.join_from(), self.flag.touch(self.module, pc as usize)) {
+            _ => match (instr.join_from(), self.flags.touch(self.module, pc as usize)) {
                 (Some(from), _) => self.join(pass, pc, &instr, from.0),
-                (None, Touch::Set(value)) => self.set(pass, pc, before, value),
-                (None, Touch::JumpsIf(value)) => {
-                    let mut stays = before;
-                    stays[usize::from(value)] = NOWHERE;
-                    stays
-                }
+                (None, Touch::Set(flag, value)) => self.set(pass, pc, before, flag, value),
+                (None, Touch::JumpsIf(flag, value)) => only(before, flag, !value),
                 (None, Touch::None) => before,
             },
         }
     }
 
-    fn point(&self, pass: &Pass, pc: u32) -> ByFlag {
+    fn point(&self, pass: &Pass, pc: u32) -> ByFlags {
         self.graph.points[pass.points + (pc - pass.first) as usize]
     }
 
@@ -305,40 +302,48 @@ impl Builder<'_> {
     }
 
     /// What a jump takes along.
-    fn jumped(&self, pass: &Pass, from: u32) -> ByFlag {
-        let mut before = self.point(pass, from - 1);
-        if let Touch::JumpsIf(value) = self.flag.touch(self.module, from as usize) {
-            before[usize::from(!value)] = NOWHERE;
+    fn jumped(&self, pass: &Pass, from: u32) -> ByFlags {
+        let before = self.point(pass, from - 1);
+        match self.flags.touch(self.module, from as usize) {
+            Touch::JumpsIf(flag, value) => only(before, flag, value),
+            _ => before,
         }
-        before
     }
 
-    fn join(&mut self, pass: &mut Pass, pc: u32, instr: &Instr, from: u32) -> ByFlag {
+    fn join(&mut self, pass: &mut Pass, pc: u32, instr: &Instr, from: u32) -> ByFlags {
         let is_land = matches!(instr, Instr::Land { .. });
         let beside = if is_land { UNREACHED } else { self.point(pass, pc - 1) };
         let comes_later = from > pc;
         let jumped = if comes_later { UNREACHED } else { self.jumped(pass, from) };
-        [0, 1].map(|flag| {
-            let is_back = comes_later && self.may_be(flag);
+        std::array::from_fn(|flags| {
+            let is_back = comes_later && flags < self.flags.values();
             let source = |node: NodeId, until| (node != NOWHERE).then_some(Source { node, until });
-            let sources = [source(beside[flag], pc - 1), source(jumped[flag], from)];
+            let sources = [source(beside[flags], pc - 1), source(jumped[flags], from)];
             let is_reached = is_back || sources.iter().any(Option::is_some);
             if !is_reached {
                 return NOWHERE;
             }
             let node = self.node(pass.context, pc, Node::Merge { sources });
             if is_back {
-                pass.jumps_back.push((node, flag, from));
+                pass.jumps_back.push((node, flags, from));
             }
             node
         })
     }
 
-    /// The flag is set: whatever it was before.
-    fn set(&mut self, pass: &Pass, pc: u32, before: ByFlag, value: bool) -> ByFlag {
-        let mut state = UNREACHED;
-        state[usize::from(value)] = self.merge(pass, pc, before);
-        state
+    /// A flag is set: whatever it was before.
+    fn set(
+        &mut self,
+        pass: &Pass,
+        pc: u32,
+        before: ByFlags,
+        flag: Flag,
+        value: bool,
+    ) -> ByFlags {
+        std::array::from_fn(|flags| match flag.is_set(flags) == value {
+            true => self.merge(pass, pc, [before[flags], before[flags ^ flag.bit()]]),
+            false => NOWHERE,
+        })
     }
 
     /// Either of two nodes, if any.
@@ -357,41 +362,37 @@ impl Builder<'_> {
         }
     }
 
-    fn call(&mut self, pass: &Pass, pc: u32, before: ByFlag, function: usize) -> ByFlag {
-        let mut contexts = [u32::MAX; 2];
-        for flag in [false, true] {
-            let before = before[usize::from(flag)];
+    fn call(&mut self, pass: &Pass, pc: u32, before: ByFlags, function: usize) -> ByFlags {
+        let mut contexts = [u32::MAX; VALUES];
+        for (flags, before) in before.into_iter().enumerate() {
             if before != NOWHERE {
-                let callee = self.context(function, flag);
-                contexts[usize::from(flag)] = callee;
+                let callee = self.context(function, flags);
+                contexts[flags] = callee;
                 self.graph.entrances.push(Entrance { pc, before, callee });
             }
         }
         if before == UNREACHED {
             return UNREACHED;
         }
-        let behind = [false, true].map(|flag| match self.may_be(usize::from(flag)) {
-            true => self.node(pass.context, pc, Node::Call { before, contexts, flag }),
+        let behind = std::array::from_fn(|flags| match flags < self.flags.values() {
+            true => {
+                self.node(pass.context, pc, Node::Call { before, contexts, flags: flags as u8 })
+            }
             false => NOWHERE,
         });
-        // With whatever flag it returns, it has been called.
+        // With whatever flags it returns, it has been called.
         self.loose(pass, behind[0]);
         behind
-    }
-
-    /// Whether the flag can have this value anywhere.
-    fn may_be(&self, flag: usize) -> bool {
-        flag == 0 || self.flag.is_some()
     }
 
     fn block(
         &mut self,
         pass: &mut Pass,
         pc: u32,
-        at_end: ByFlag,
+        at_end: ByFlags,
         from: Label,
         function: Option<usize>,
-    ) -> ByFlag {
+    ) -> ByFlags {
         pass.blocks = pass.blocks.saturating_sub(1);
         let before = self.point(pass, from.0 - 1);
         at_end.map(|inside| {
@@ -404,13 +405,19 @@ impl Builder<'_> {
     }
 }
 
+/// Of a state, what is so with a flag at a value.
+fn only(state: ByFlags, flag: Flag, value: bool) -> ByFlags {
+    let is_so = |flags: usize| flag.is_set(flags) == value;
+    std::array::from_fn(|flags| if is_so(flags) { state[flags] } else { NOWHERE })
+}
+
 /// A pass over the code of a context.
 struct Pass {
     /// Of the function, or of the innermost branch.
     context: u32,
     points: usize,
     first: u32,
-    /// The joins of jumps that come later: the node, the flag, the jump.
+    /// The joins of jumps that come later: the node, the flags, the jump.
     jumps_back: Vec<(NodeId, usize, u32)>,
     /// The forks that are open.
     forks: Vec<fork::Open>,

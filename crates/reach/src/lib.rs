@@ -90,7 +90,7 @@ impl<'m> Reach<'m> {
             facts.at(node).is_reached && is_entered[graph.owners[node as usize] as usize]
         };
         if graph.set_at_turns.iter().any(is_come_to) {
-            graph = Graph::of(module, stops, &turns.with_altered_flag());
+            graph = Graph::of(module, stops, &turns.with_altered_flags());
             facts = Facts::of(&graph);
             is_entered = sets::entered(&graph, &facts);
         }
@@ -126,7 +126,7 @@ impl<'m> Reach<'m> {
         all
     }
 
-    /// How going back from a point ends at a horizon, if it may: by the fewest calls.
+    /// How going back from a point ends at a horizon, if it may: by the fewest calls and rounds.
     #[must_use]
     pub fn way(&self, pc: u32, horizon: Horizon) -> Option<Way> {
         let mut way = None;

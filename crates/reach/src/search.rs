@@ -17,6 +17,8 @@ pub enum Link {
     InPlaceOf(u32),
     /// Into another branch of this fork, which may have had turns.
     Beside(u32),
+    /// Back over a jump back to this join: a round of a loop, or what was begun again.
+    Again(u32),
 }
 
 /// How going back ends somewhere.
@@ -57,7 +59,7 @@ struct Step {
 
 /// What a way costs.
 pub(crate) enum Cost<'a> {
-    /// One for each call that is crossed.
+    /// One for each call that is crossed, and each jump back.
     Links,
     /// One for each action that is taken back, by how many begin up to each instruction; ways that
     /// cost as much as this are given up.
@@ -203,7 +205,8 @@ impl<'s, 'm> Search<'s, 'm> {
             Node::Entry { .. } => {}
             Node::Merge { sources } => {
                 for Source { node, until } in sources.into_iter().flatten() {
-                    self.follow(state, cost, (node, met), until, None);
+                    let link = (until > pc).then_some(Link::Again(pc));
+                    self.follow(state, cost, (node, met), until, link);
                 }
             }
             Node::Block { before, .. } => {

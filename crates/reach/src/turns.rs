@@ -1,5 +1,5 @@
 //! Where the branches of forks take turns: in which code, and what is known of the
-//! [`flag`](crate::flag) there.
+//! [`flags`](crate::flag) there.
 //!
 //! Knows what lies between a fork and its join and what is called from there, and no ways.
 
@@ -11,16 +11,16 @@ use obverse_isa::Instr;
 pub(crate) struct Turns {
     /// By instruction; empty if there is no fork.
     in_fork: Vec<bool>,
-    is_flag_altered: bool,
+    are_flags_altered: bool,
 }
 
 impl Turns {
-    /// Those of a module, where the flag is not set whenever a turn ends.
+    /// Those of a module, where no flag is set when a turn ends.
     pub(crate) fn of(module: &Module) -> Self {
         if !module.code.iter().any(|instr| matches!(instr, Instr::Fork { .. })) {
             return Self::default();
         }
-        let mut turns = Self { in_fork: vec![false; module.code.len()], is_flag_altered: false };
+        let mut turns = Self { in_fork: vec![false; module.code.len()], are_flags_altered: false };
         let mut called = Vec::new();
         let mut open = 0_u32;
         for (at, instr) in module.code.iter().enumerate() {
@@ -36,9 +36,9 @@ impl Turns {
         turns
     }
 
-    /// The same where the flag may be anything when a turn begins.
-    pub(crate) fn with_altered_flag(self) -> Self {
-        Self { is_flag_altered: true, ..self }
+    /// The same where the flags may be anything when a turn begins.
+    pub(crate) fn with_altered_flags(self) -> Self {
+        Self { are_flags_altered: true, ..self }
     }
 
     fn add_called(&mut self, module: &Module, mut called: Vec<usize>) {
@@ -66,8 +66,8 @@ impl Turns {
         self.in_fork.get(pc as usize).copied().unwrap_or(false)
     }
 
-    /// Whether the flag may be anything when a turn begins.
-    pub(crate) fn is_flag_altered(&self) -> bool {
-        self.is_flag_altered
+    /// Whether the flags may be anything when a turn begins.
+    pub(crate) fn are_flags_altered(&self) -> bool {
+        self.are_flags_altered
     }
 }

@@ -73,7 +73,7 @@ enum Edge {
 /// The picture of a page.
 pub(super) fn picture(page: &Page, pens: &Pens) -> String {
     let digits = page.rows.iter().map(|row| row.number).max().unwrap_or(0).to_string().len();
-    let letters = page.stretches.len().checked_sub(1).map_or(0, |last| letter(last).len());
+    let letters = page.rows.iter().map(|row| names(&row.stretches()).len()).max().unwrap_or(0);
     let edges = edges(&page.rows);
     let mut drawn = String::new();
     for (row, edge) in page.rows.iter().zip(edges) {
@@ -83,10 +83,9 @@ pub(super) fn picture(page: &Page, pens: &Pens) -> String {
         if let Some(heading) = &row.heading {
             let _ = writeln!(drawn, "{}{heading}", " ".repeat(digits + letters + 5));
         }
-        let stretch = row.statement.as_ref().and_then(|statement| statement.stretch);
-        let name = match (edge, stretch) {
-            (Edge::Top | Edge::Alone, Some(stretch)) => letter(stretch),
-            _ => String::new(),
+        let name = match edge {
+            Edge::Top | Edge::Alone => names(&row.stretches()),
+            Edge::Side | Edge::Foot | Edge::Nothing => String::new(),
         };
         let bracket = match edge {
             Edge::Top => pens.top,
@@ -95,7 +94,7 @@ pub(super) fn picture(page: &Page, pens: &Pens) -> String {
             Edge::Alone => pens.alone,
             Edge::Nothing => ' ',
         };
-        let class = row.statement.as_ref().map_or(' ', |statement| pens.of(statement.standing));
+        let class = row.standing().map_or(' ', |standing| pens.of(standing));
         let (number, text) = (row.number, row.text.as_str());
         let line = format!("{number:>digits$}  {name:>letters$}{bracket} {class} {text}");
         let _ = writeln!(drawn, "{}", line.trim_end());
@@ -115,25 +114,34 @@ fn across(line: &Line, letters: usize, pens: &Pens) -> String {
     told + &draw(rest)
 }
 
+/// The names of the stretches that the statements of a line are in.
+fn names(stretches: &[usize]) -> String {
+    stretches.iter().map(|&stretch| letter(stretch)).collect::<Vec<_>>().join(",")
+}
+
 /// A bracket is around lines of one function, one below the other, that can go back equally far.
+/// A line whose statements cannot has one of its own.
 fn edges(rows: &[Row]) -> Vec<Edge> {
     let mut edges = vec![Edge::Nothing; rows.len()];
     // The first and the last line of the bracket that is open, and whose it is.
-    let mut open: Option<(usize, usize, (usize, usize))> = None;
-    let mut close = |open: Option<(usize, usize, (usize, usize))>| {
+    let mut open: Option<(usize, usize, Option<(usize, usize)>)> = None;
+    let mut close = |open: Option<(usize, usize, Option<(usize, usize)>)>| {
         let Some((first, last, _)) = open else { return };
         edges[first..=last].fill(Edge::Side);
         edges[first] = Edge::Top;
         edges[last] = if first == last { Edge::Alone } else { Edge::Foot };
     };
     for (at, row) in rows.iter().enumerate() {
-        if let Some(statement) = &row.statement {
-            let key = statement.stretch.map(|stretch| (statement.function, stretch));
-            open = match (open, key) {
-                (Some((first, _, of)), Some(key)) if of == key => Some((first, at, key)),
-                (before, key) => {
+        if let Some(statement) = row.statements.first() {
+            let key = match row.stretches()[..] {
+                [stretch] => Some((statement.function, stretch)),
+                _ => None,
+            };
+            open = match open {
+                Some((first, _, of)) if of.is_some() && of == key => Some((first, at, key)),
+                before => {
                     close(before);
-                    key.map(|key| (at, at, key))
+                    (!row.stretches().is_empty()).then_some((at, at, key))
                 }
             };
         }
@@ -179,7 +187,7 @@ pub(super) fn table(page: &Page, pens: &Pens, what: &str) -> String {
             let _ = writeln!(told, "{}", line.trim_end());
         }
     }
-    if page.rows.iter().filter_map(|row| row.statement.as_ref()).any(|one| one.stretch.is_none()) {
+    if page.rows.iter().any(|row| !row.statements.is_empty() && row.stretches().is_empty()) {
         let _ = writeln!(told, "Nothing ever comes to {what} without a bracket.");
     }
     told
@@ -201,29 +209,30 @@ fn folded(list: &str) -> Vec<String> {
 /// The lines of each stretch: `12-15, 20`. A line that does nothing does not part them.
 fn lines(page: &Page) -> Vec<String> {
     let mut lines = vec![String::new(); page.stretches.len()];
-    // The stretch of the rows before, with the first and the last of their lines.
-    let mut open: Option<(usize, usize, usize)> = None;
-    let mut close = |open: Option<(usize, usize, usize)>| {
-        let Some((stretch, first, last)) = open else { return };
+    let mut close = |(stretch, first, last): (usize, usize, usize)| {
         let separator = if lines[stretch].is_empty() { "" } else { ", " };
         let _ = match first == last {
             true => write!(lines[stretch], "{separator}{first}"),
             false => write!(lines[stretch], "{separator}{first}-{last}"),
         };
     };
+    // The stretches of the row before, with the first and the last of their lines.
+    let mut open: Vec<(usize, usize, usize)> = Vec::new();
     for row in &page.rows {
         if row.is_after_gap {
-            close(open.take());
+            open.drain(..).for_each(&mut close);
         }
-        let Some(statement) = &row.statement else { continue };
-        open = match (open, statement.stretch) {
-            (Some((of, first, _)), Some(stretch)) if of == stretch => Some((of, first, row.number)),
-            (before, stretch) => {
-                close(before);
-                stretch.map(|stretch| (stretch, row.number, row.number))
-            }
-        };
+        if row.statements.is_empty() {
+            continue;
+        }
+        let before = std::mem::take(&mut open);
+        let first_of = |stretch: usize| before.iter().find(|one| one.0 == stretch).map(|one| one.1);
+        open.extend(row.stretches().into_iter().map(|stretch| {
+            (stretch, first_of(stretch).unwrap_or(row.number), row.number)
+        }));
+        let is_over = |one: &&(usize, usize, usize)| open.iter().all(|goes_on| goes_on.0 != one.0);
+        before.iter().filter(is_over).copied().for_each(&mut close);
     }
-    close(open);
+    open.into_iter().for_each(close);
     lines
 }

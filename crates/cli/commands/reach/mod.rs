@@ -18,16 +18,36 @@ use words::Words;
 pub(crate) struct Arguments {
     /// The program: source, assembly text or module.
     file: PathBuf,
-    /// Explain one line: where it can go back to, and how. For a program without a source, an
-    /// instruction.
-    #[arg(long, value_name = "LINE")]
-    at: Option<usize>,
+    /// Explain what is on one line, or at one column of it: where it can go back to, and how. For a
+    /// program without a source, an instruction.
+    #[arg(long, value_name = "LINE[:COLUMN]")]
+    at: Option<Place>,
     /// Draw with ASCII alone.
     #[arg(long)]
     ascii: bool,
     /// For machines: JSON Lines, an object a statement and a summary last.
     #[arg(long)]
     pub(crate) json: bool,
+}
+
+/// A line, and where in it, both from 1.
+#[derive(Clone, Copy)]
+struct Place {
+    line: usize,
+    column: Option<usize>,
+}
+
+impl std::str::FromStr for Place {
+    type Err = &'static str;
+
+    fn from_str(text: &str) -> std::result::Result<Self, Self::Err> {
+        let number = |text: &str| text.parse().map_err(|_| "write a line, or line:column");
+        let (line, column) = match text.split_once(':') {
+            Some((line, column)) => (line, Some(number(column)?)),
+            None => (text, None),
+        };
+        Ok(Self { line: number(line)?, column })
+    }
 }
 
 pub(crate) fn run(arguments: &Arguments) -> Result {
@@ -64,20 +84,27 @@ impl View<'_> {
     /// The statements that are asked for.
     fn chosen(&self) -> std::result::Result<Vec<(&Row, &Statement)>, Problem> {
         let rows = self.page.rows.iter();
-        let all = rows.filter_map(|row| Some((row, row.statement.as_ref()?)));
-        let Some(line) = self.arguments.at else { return Ok(all.collect()) };
-        let chosen: Vec<_> = all.filter(|(row, _)| row.number == line).collect();
-        if chosen.is_empty() {
+        let all = rows.flat_map(|row| row.statements.iter().map(move |one| (row, one)));
+        let Some(Place { line, column }) = self.arguments.at else { return Ok(all.collect()) };
+        let of_line: Vec<_> = all.filter(|(row, _)| row.number == line).collect();
+        let Some(first) = of_line.first() else {
             let unit = self.unit().trim_end_matches('s');
             let why = format!("{unit} {line} does nothing that could be gone back from");
             return Err(Problem::of_file(&self.arguments.file, why));
-        }
-        Ok(chosen)
+        };
+        let Some(column) = column else { return Ok(of_line) };
+        // The one that is written there; the first, before all of them.
+        let begun = of_line.iter().map(|(_, one)| one.column).filter(|&begin| begin <= column);
+        let begin = begun.max().unwrap_or(first.1.column);
+        Ok(of_line.into_iter().filter(|(_, one)| one.column == begin).collect())
     }
 
     /// Where one line can go back to, and how.
     fn explain(&self) -> std::result::Result<(), Problem> {
-        for (_, statement) in self.chosen()? {
+        for (index, (_, statement)) in self.chosen()?.into_iter().enumerate() {
+            if index > 0 {
+                write::line("");
+            }
             let function = self.words.function(statement.function);
             let place = self.words.statement(statement.point);
             write::line(&format!("{place}, in {function}: {}", statement.standing.name()));
@@ -108,7 +135,9 @@ impl View<'_> {
                 "type": "statement",
                 "file": file.filter(|_| has_source).map(|file| &file.name),
                 "line": has_source.then_some(row.number),
+                "column": has_source.then_some(statement.column),
                 "text": row.text.trim(),
+                "statement": crate::story::said(self.words.module, statement.point),
                 "function": self.words.module.functions[statement.function].name,
                 "instruction": statement.point,
                 "action": statement.is_action,

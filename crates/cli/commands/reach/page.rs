@@ -28,8 +28,8 @@ pub(super) struct Row {
     pub(super) is_after_gap: bool,
     /// What begins here, if the text does not say so.
     pub(super) heading: Option<String>,
-    /// What stands there, if it does anything.
-    pub(super) statement: Option<Statement>,
+    /// What stands there and does anything, in the order of the source.
+    pub(super) statements: Vec<Statement>,
     /// What stops going back from behind this line that is on it.
     pub(super) horizon: Option<Line>,
 }
@@ -42,17 +42,37 @@ pub(super) struct Line {
     pub(super) is_certain: bool,
 }
 
-/// What is done on a line.
+/// Something that is done on a line.
 #[derive(Clone)]
 pub(super) struct Statement {
     pub(super) function: usize,
-    /// The instruction before which the line is gone back from.
+    /// The instruction before which it is gone back from.
     pub(super) point: u32,
+    /// Where in the line it begins, in characters from 1; 1 without a source.
+    pub(super) column: usize,
     pub(super) standing: Standing,
     /// None if nothing ever comes there.
     pub(super) stretch: Option<usize>,
     /// Whether the story of a run tells of it.
     pub(super) is_action: bool,
+}
+
+impl Row {
+    /// What is hardest to take back of it.
+    pub(super) fn standing(&self) -> Option<Standing> {
+        self.statements.iter().map(|statement| statement.standing).max()
+    }
+
+    /// The stretches of its statements, in their order, each once.
+    pub(super) fn stretches(&self) -> Vec<usize> {
+        let mut stretches = Vec::new();
+        for stretch in self.statements.iter().filter_map(|statement| statement.stretch) {
+            if !stretches.contains(&stretch) {
+                stretches.push(stretch);
+            }
+        }
+        stretches
+    }
 }
 
 /// Points that can go back equally far.
@@ -81,7 +101,7 @@ impl Page {
         order.sort_by_key(|&index| self.stretches[index].verdict.horizons.clone());
         let mut places = vec![0; order.len()];
         order.iter().enumerate().for_each(|(place, &index)| places[index] = place);
-        for statement in self.rows.iter_mut().filter_map(|row| row.statement.as_mut()) {
+        for statement in self.rows.iter_mut().flat_map(|row| &mut row.statements) {
             statement.stretch = statement.stretch.map(|stretch| places[stretch]);
         }
         self.stretches.sort_by_key(|stretch| stretch.verdict.horizons.clone());
@@ -116,7 +136,8 @@ impl Stretches<'_, '_> {
 /// The lines of all source files, with what stands on them.
 struct Sheet<'m, 'w> {
     words: &'w Words<'m>,
-    statements: BTreeMap<(u16, usize), Statement>,
+    /// By line, and where they begin in the source.
+    statements: HashMap<(u16, usize), BTreeMap<u32, Statement>>,
     /// The file, and the first and the last line, of each function.
     shown: Vec<(u16, usize, usize)>,
     /// By line: what may be left behind it that stops going back, and the last instruction.
@@ -125,7 +146,7 @@ struct Sheet<'m, 'w> {
 
 impl<'m, 'w> Sheet<'m, 'w> {
     fn of(module: &'m Module, reach: &Reach<'m>, words: &'w Words<'m>) -> Self {
-        let (statements, shown, left) = (BTreeMap::new(), Vec::new(), HashMap::new());
+        let (statements, shown, left) = (HashMap::new(), Vec::new(), HashMap::new());
         let mut sheet = Self { words, statements, shown, left };
         // The start is written nowhere.
         for function in module.functions.iter().skip(1) {
@@ -157,8 +178,10 @@ impl<'m, 'w> Sheet<'m, 'w> {
         }
         let standing = reach.standing(entry.first..end);
         let (point, is_action) = (point(module, entry.first, end), entry.action.is_some());
-        let statement = Statement { function, point, standing, stretch: None, is_action };
-        let known = self.statements.entry(place).or_insert(statement);
+        let column = self.words.column(entry);
+        let statement = Statement { function, point, column, standing, stretch: None, is_action };
+        let of_line = self.statements.entry(place).or_default();
+        let known = of_line.entry(entry.start).or_insert(statement);
         known.standing = known.standing.max(standing);
         known.is_action |= is_action;
     }
@@ -200,14 +223,15 @@ impl<'m, 'w> Sheet<'m, 'w> {
             let text = self.words.line(file, number).unwrap_or("").to_owned();
             let is_next = |last: &Row| last.file == file && last.number + 1 == number;
             let is_after_gap = !rows.last().is_none_or(is_next);
-            let mut statement = self.statements.remove(&(file, number));
-            if let Some(statement) = &mut statement {
+            let found = self.statements.remove(&(file, number)).unwrap_or_default();
+            let mut statements: Vec<Statement> = found.into_values().collect();
+            for statement in &mut statements {
                 statement.stretch = stretches.of(statement.point);
             }
             let left = self.left.remove(&(file, number));
             let horizon = left.and_then(|(left, last)| line(stretches, &left, last));
             let heading = None;
-            rows.push(Row { file, number, text, is_after_gap, heading, statement, horizon });
+            rows.push(Row { file, number, text, is_after_gap, heading, statements, horizon });
         }
         rows
     }
@@ -255,6 +279,7 @@ fn instructions(module: &Module, reach: &Reach<'_>, stretches: &mut Stretches<'_
             let statement = does_something(instr).then(|| Statement {
                 function,
                 point: pc,
+                column: 1,
                 standing: reach.standing(pc..pc + 1),
                 stretch: stretches.of(pc),
                 is_action: false,
@@ -265,7 +290,7 @@ fn instructions(module: &Module, reach: &Reach<'_>, stretches: &mut Stretches<'_
                 text: text::instruction(module, pc).unwrap_or_default(),
                 is_after_gap: pc == declared.first && function > 0,
                 heading: (pc == declared.first).then(|| stretches.words.function(function)),
-                statement,
+                statements: statement.into_iter().collect(),
                 horizon: line(stretches, &reach.left_by(pc..pc + 1), pc),
             });
         }

@@ -65,6 +65,16 @@ impl<'m> Words<'m> {
         text.unwrap_or("")
     }
 
+    /// Where in its line an entry begins, in characters from 1.
+    pub(super) fn column(&self, entry: &SourceEntry) -> usize {
+        let lines = self.lines.get(usize::from(entry.file)).map_or(&[][..], Vec::as_slice);
+        let line = lines.partition_point(|&begin| begin <= entry.start as usize).checked_sub(1);
+        let begin = line.map_or(0, |line| lines[line]);
+        let file = self.module.sources.get(usize::from(entry.file));
+        let before = file.and_then(|file| file.text.get(begin..entry.start as usize));
+        before.map_or(0, |before| before.chars().count()) + 1
+    }
+
     /// Whether an entry is the later one of a block: both are written in its header.
     pub(super) fn is_end(&self, first: u32) -> bool {
         self.ends.contains(&first)
@@ -154,6 +164,7 @@ impl<'m> Words<'m> {
             Link::Beside(pc) => {
                 format!("back over turns of another branch of {}", self.statement(pc))
             }
+            Link::Again(pc) => format!("back into the round before: {}", self.begun_again(pc)),
         };
         let last = match way.horizon {
             Horizon::Start => "to the start of the program".to_owned(),
@@ -164,8 +175,22 @@ impl<'m> Words<'m> {
             Link::CalledFrom(pc) | Link::Within(pc) | Link::InPlaceOf(pc) | Link::Beside(pc) => {
                 self.module.function_at(pc).is_some_and(|function| function > 0)
             }
+            Link::Again(_) => true,
         };
         way.links.iter().filter(is_written).map(step).chain([last]).collect()
+    }
+
+    /// What has begun again at this join.
+    fn begun_again(&self, pc: u32) -> String {
+        let function = self.module.function_at(pc).unwrap_or(0);
+        let place = |pc| self.module.source_at(pc).map(|entry| (entry.file, entry.start));
+        match function {
+            0 => "the program has begun again".to_owned(),
+            _ if place(pc) == place(self.module.functions[function].first) => {
+                format!("{} has begun again", self.function(function))
+            }
+            _ => self.statement(pc),
+        }
     }
 
     fn called(&self, pc: u32) -> String {

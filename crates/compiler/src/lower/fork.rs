@@ -1,9 +1,11 @@
 //! Forks as tasks: the branches one behind the other, and how an error leaves all of them.
 //!
-//! What leaves a branch says where to in a local, goes to the end of the branch, leaves the fork
-//! there, and goes on behind its join, where nothing of the fork is under way any more. What the
-//! other branches were in the middle of is put right there: settings are what they were before the
-//! fork, and what cannot be taken back is not. A branch that nothing leaves has none of this.
+//! What leaves a branch sets `$leaving`, says where to in a local, goes to the end of the branch,
+//! leaves the fork there, and goes on behind its join, where nothing of the fork is under way any
+//! more. What the other branches were in the middle of is put right there: settings are what they
+//! were before the fork, and what cannot be taken back is not. A branch that nothing leaves has none
+//! of this. That the fork is left is said by the flag and not by the local, since that is what is
+//! followed where it is found out how far back a point can go.
 
 use super::Lower;
 use super::frame::Scope;
@@ -17,7 +19,8 @@ use obverse_isa::{Instr, LocalId, ReasonId, Setting};
 impl Lower<'_> {
     /// Branches that take turns.
     pub(super) fn fork(&mut self, branches: &[Block]) {
-        let way = self.begin_ways(branches);
+        let is_left = branches.iter().any(|branch| self.may_be_left(branch));
+        let way = is_left.then(|| self.way_local());
         let held = self.held(branches);
         let kept = self.keep_settings(held);
         let fork = self.code.jump(|join| Instr::Fork { join });
@@ -28,17 +31,16 @@ impl Lower<'_> {
                 self.push(Instr::ForkNext {});
             }
             let found = self.fork_branch(branch, way);
-            if let (Some(local), false) = (way, found.is_empty()) {
-                leaving.push(self.leave_fork(local));
+            if !found.is_empty() {
+                leaving.extend(self.leave_fork());
             }
             ways.extend(found);
         }
         let join = self.code.join(fork, |from| Instr::ForkJoin { from });
         leaving.into_iter().for_each(|mark| self.code.lead(mark, join));
-        if let Some(way) = way {
-            self.put_right(way, &kept, held.irreversible);
+        if !ways.is_empty() {
+            self.go_on_if_left(&ways, &kept, held.irreversible);
         }
-        self.go_on(&ways);
     }
 
     /// What branches may be in the middle of when another one leaves the fork.
@@ -62,31 +64,33 @@ impl Lower<'_> {
             .collect()
     }
 
-    /// Behind the join, if the fork was left.
-    fn put_right(
+    /// Behind the join, if the fork was left: put right what would not be so, and go on where the
+    /// ways lead.
+    fn go_on_if_left(
         &mut self,
-        way: LocalId,
+        ways: &[Way],
         kept: &[(Setting, LocalId)],
         irreversible: Option<ReasonId>,
     ) {
-        if kept.is_empty() && irreversible.is_none() {
-            return;
+        let Some(stay) = self.unless_leaving() else { return };
+        if let Some(leaving) = self.globals.leaving {
+            self.set_flag(leaving, false);
         }
-        let stay = self.unless_left(way);
         for &(setting, local) in kept {
             self.restore(setting, local);
         }
         if let Some(reason) = irreversible {
             self.push(Instr::Irreversible { reason });
         }
+        self.go_on_one_of(ways);
         self.join_one(stay);
     }
 
-    /// A jump that is taken if nothing leads out of the fork.
-    fn unless_left(&mut self, way: LocalId) -> Mark {
-        self.push(Instr::PushLocal { local: way });
-        self.push(Instr::PushInt { value: 0 });
-        self.code.jump(|target| Instr::JumpUnlessNe { prefix: PREFIX, target })
+    /// A jump that is taken if nothing is being left.
+    fn unless_leaving(&mut self) -> Option<Mark> {
+        let leaving = self.globals.leaving?;
+        self.push(Instr::PushGlobal { global: leaving });
+        Some(self.code.jump(|target| Instr::JumpUnless { prefix: PREFIX, target }))
     }
 
     /// A branch up to its end; the ways that lead there from within it.
@@ -103,11 +107,11 @@ impl Lower<'_> {
     }
 
     /// At the end of a branch: leave the fork if a way leads out of it.
-    fn leave_fork(&mut self, way: LocalId) -> Mark {
-        let stay = self.unless_left(way);
+    fn leave_fork(&mut self) -> Option<Mark> {
+        let stay = self.unless_leaving()?;
         let leave = self.code.jump(|join| Instr::ForkLeave { join });
         self.frame.is_reached = false;
         self.join_one(stay);
-        leave
+        Some(leave)
     }
 }

@@ -55,10 +55,16 @@ impl Lower<'_> {
         let block = self.block_around();
         self.step_out(block.map_or(0, |index| index + 1));
         if let Some(scope) = block.and_then(|index| self.frame.scopes.get(index)) {
-            let of_branch = if let Scope::Branch(local, _) = scope { *local } else { None };
+            let (is_branch, of_branch) = match scope {
+                Scope::Branch(local, _) => (true, *local),
+                _ => (false, None),
+            };
             let local = of_branch.unwrap_or_else(|| self.way_local());
             self.push(Instr::PushInt { value: way as i32 });
             self.push(Instr::StoreLocal { prefix: PREFIX, local });
+            if let (true, Some(leaving)) = (is_branch, self.globals.leaving) {
+                self.set_flag(leaving, true);
+            }
         }
         let mark = self.jump();
         match block.and_then(|index| self.frame.scopes.get_mut(index)) {
@@ -71,9 +77,10 @@ impl Lower<'_> {
     /// Leave all sequences under way with an error pending, and begin the program again if that is
     /// the way.
     pub(super) fn give_up(&mut self, way: Way) {
-        if self.block_around().is_some() {
-            // A recovery that has given up may have set it.
-            if let Some(leaving) = self.globals.leaving {
+        if let Some(block) = self.block_around() {
+            let is_branch = matches!(self.frame.scopes.get(block), Some(Scope::Branch(..)));
+            // A recovery that has given up may have set it; a branch that is left sets it anyway.
+            if let (false, Some(leaving)) = (is_branch, self.globals.leaving) {
                 self.set_flag(leaving, false);
             }
             return self.leave(way);
@@ -81,7 +88,9 @@ impl Lower<'_> {
         if let (Way::Restart, Some(restart)) = (way, self.globals.restart) {
             self.set_flag(restart, true);
         }
-        if let (false, Some(leaving)) = (self.frame.is_start, self.globals.leaving) {
+        // The start looks at what is asked for only if something is being left.
+        let is_looked_at = !self.frame.is_start || way == Way::Restart;
+        if let (true, Some(leaving)) = (is_looked_at, self.globals.leaving) {
             self.set_flag(leaving, true);
         }
         self.leave(Way::Out);
@@ -142,12 +151,9 @@ impl Lower<'_> {
         is_left || due.iter().any(|error| self.effects.response(*error) != Response::Ignore)
     }
 
-    /// Behind the end of such a block, or of such a fork: go on with what has led there.
+    /// Behind the end of such a block: go on with what has led there, if anything has.
     pub(super) fn go_on(&mut self, ways: &[Way]) {
-        for way in Way::ALL {
-            if !ways.contains(&way) {
-                continue;
-            }
+        for way in Way::ALL.into_iter().filter(|way| ways.contains(way)) {
             let local = self.way_local();
             self.push(Instr::PushLocal { local });
             let value = way as i16;
@@ -156,11 +162,23 @@ impl Lower<'_> {
                 value,
                 target,
             });
-            match way {
-                Way::Again => self.leave(way),
-                Way::Out | Way::Restart => self.give_up(way),
-            }
+            self.go(way);
             self.join_one(stay);
+        }
+    }
+
+    /// The same where one of the ways has led there.
+    pub(super) fn go_on_one_of(&mut self, ways: &[Way]) {
+        let Some(last) = Way::ALL.into_iter().rfind(|way| ways.contains(way)) else { return };
+        let others: Vec<Way> = ways.iter().copied().filter(|way| *way != last).collect();
+        self.go_on(&others);
+        self.go(last);
+    }
+
+    fn go(&mut self, way: Way) {
+        match way {
+            Way::Again => self.leave(way),
+            Way::Out | Way::Restart => self.give_up(way),
         }
     }
 
@@ -191,7 +209,7 @@ impl Lower<'_> {
     }
 
     /// The local that says which way leads out of a block.
-    fn way_local(&mut self) -> LocalId {
+    pub(super) fn way_local(&mut self) -> LocalId {
         if let Some(known) = self.frame.way {
             return known;
         }

@@ -8,7 +8,7 @@ use super::test::Test;
 use crate::effects::Effects;
 use crate::response::Response;
 use crate::tree::{Place, Program, StatementKind};
-use obverse_bytecode::{Continuation, FunctionKind};
+use obverse_bytecode::{Continuation, FunctionKind, Mark};
 use obverse_isa::{ErrorId, GlobalId, Instr, LocalId, Type};
 
 /// The errors after which the program begins again.
@@ -94,15 +94,21 @@ impl<'p> Lower<'p> {
     }
 
     /// Begin the program again if that is asked for and has not been done too often.
-    fn restart(&mut self, top: obverse_bytecode::Mark, rounds: LocalId) {
+    fn restart(&mut self, top: Mark, rounds: LocalId) {
         let Some(restart) = self.globals.restart else { return };
-        self.push(Instr::PushGlobal { global: restart });
-        let unasked = self.code.jump(|target| Instr::JumpUnless { prefix: PREFIX, target });
+        // Where nothing has been left, the program does not begin again, and reach follows that.
+        let flags = [self.globals.leaving, Some(restart)];
+        let mut not_again: Vec<Mark> = Vec::new();
+        for global in flags.into_iter().flatten() {
+            self.push(Instr::PushGlobal { global });
+            let unless = self.code.jump(|target| Instr::JumpUnless { prefix: PREFIX, target });
+            not_again.push(unless);
+        }
         let errors = restarting_errors(self.program, self.effects);
         let declared = errors.iter().map(|error| &self.program.module.errors[error.index()]);
         let most = declared.map(most_rounds).max().unwrap_or(0);
         let test = Test::UnlessLocalLtImmediate(rounds, most);
-        let too_often = self.code.jump(|target| test.to(target));
+        not_again.push(self.code.jump(|target| test.to(target)));
         self.push(Instr::AddLocalImmediate { local: rounds, value: 1 });
         for error in errors {
             self.push(Instr::ErrorClear { error });
@@ -112,6 +118,6 @@ impl<'p> Lower<'p> {
             self.set_flag(leaving, false);
         }
         self.jump_back(top);
-        self.join_all(vec![unasked, too_often]);
+        self.join_all(not_again);
     }
 }

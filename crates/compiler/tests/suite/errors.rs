@@ -233,22 +233,25 @@ fn recover_and_restart_the_program() {
         "$start",
         "
         enter
-        join +13
+        join +15
         push.int 1
         store.global n
         call main
+        push.global $leaving
+        jump.unless +11
         push.global $restart
-        jump.unless +9
-        jump.unless.local.lt.imm $rounds 3 +9
+        jump.unless +10
+        jump.unless.local.lt.imm $rounds 3 +10
         add.local.imm $rounds 1
         error.clear e
         push.bool low
         store.global $restart
         push.bool low
         store.global $leaving
-        jump -13
-        land -9
-        join -9
+        jump -15
+        land -11
+        join -10
+        join -10
         halt
         ",
     );

@@ -1,10 +1,10 @@
 //! Forks in the graph: each branch is a context of its own, which the fork enters as a call does,
 //! and behind which the branches come together, run through or left.
 //!
-//! Between the turns of a branch others go on. So the flag may be altered there, and what they may
+//! Between the turns of a branch others go on. So flags may be altered there, and what they may
 //! have run by then lies *around* the branch and all that it calls.
 
-use super::{Branch, Builder, ByFlag, Entrance, Fork, NOWHERE, Node, NodeId, Pass, UNREACHED};
+use super::{Branch, Builder, ByFlags, Entrance, Fork, NOWHERE, Node, NodeId, Pass, UNREACHED};
 use crate::facts::Facts;
 use crate::graph::Graph;
 
@@ -19,30 +19,34 @@ pub(super) struct Open {
 }
 
 /// Nothing comes directly behind; the join looks at what was there.
-pub(super) fn leave(pass: &mut Pass, pc: u32) -> ByFlag {
+pub(super) fn leave(pass: &mut Pass, pc: u32) -> ByFlags {
     pass.forks.last_mut().into_iter().for_each(|open| open.leaves.push(pc));
     UNREACHED
 }
 
 impl Builder<'_> {
     /// What is there when a branch goes on whose turn has ended.
-    pub(super) fn turn(&mut self, pass: &Pass, pc: u32, state: ByFlag) -> ByFlag {
-        if self.turns.is_flag_altered() {
-            let node = self.merge(pass, pc, state);
+    pub(super) fn turn(&mut self, pass: &Pass, pc: u32, state: ByFlags) -> ByFlags {
+        if self.turns.are_flags_altered() {
+            let node = state.into_iter().fold(NOWHERE, |all, node| match (all, node) {
+                (all, NOWHERE) => all,
+                (all, node) => self.merge(pass, pc, [all, node]),
+            });
             return self.at_turn(node);
         }
-        let [unset, set] = state;
-        self.graph.set_at_turns.extend((set != NOWHERE).then_some(set));
+        let [unset, set @ ..] = state;
+        self.graph.set_at_turns.extend(set.into_iter().filter(|&node| node != NOWHERE));
         self.at_turn(unset)
     }
 
-    /// A node where a turn begins: by the flag.
-    fn at_turn(&self, node: NodeId) -> ByFlag {
-        [node, if self.turns.is_flag_altered() { node } else { NOWHERE }]
+    /// A node where a turn begins: by the flags.
+    fn at_turn(&self, node: NodeId) -> ByFlags {
+        let may_be = if self.turns.are_flags_altered() { self.flags.values() } else { 1 };
+        std::array::from_fn(|flags| if flags < may_be { node } else { NOWHERE })
     }
 
-    pub(super) fn fork(&mut self, pass: &mut Pass, pc: u32, before: ByFlag) -> ByFlag {
-        let [before, _] = self.turn(pass, pc, before);
+    pub(super) fn fork(&mut self, pass: &mut Pass, pc: u32, before: ByFlags) -> ByFlags {
+        let [before, ..] = self.turn(pass, pc, before);
         let (fork, around) = (self.graph.forks.len() as u32, pass.context);
         let blocks = std::mem::take(&mut pass.blocks);
         self.graph.forks.push(Fork { pc, before, branches: Vec::new() });
@@ -50,13 +54,13 @@ impl Builder<'_> {
         self.branch(pass, pc, fork)
     }
 
-    pub(super) fn fork_next(&mut self, pass: &mut Pass, pc: u32, before: ByFlag) -> ByFlag {
+    pub(super) fn fork_next(&mut self, pass: &mut Pass, pc: u32, before: ByFlags) -> ByFlags {
         let Some(fork) = pass.forks.last().map(|open| open.fork) else { return UNREACHED };
         self.end_branch(pass, pc, before);
         self.branch(pass, pc, fork)
     }
 
-    pub(super) fn fork_join(&mut self, pass: &mut Pass, pc: u32, before: ByFlag) -> ByFlag {
+    pub(super) fn fork_join(&mut self, pass: &mut Pass, pc: u32, before: ByFlags) -> ByFlags {
         let Some(open) = pass.forks.pop() else { return UNREACHED };
         self.end_branch(pass, pc, before);
         (pass.context, pass.blocks) = (open.around, open.blocks);
@@ -65,18 +69,18 @@ impl Builder<'_> {
         self.loose(pass, join);
         open.leaves.iter().fold(self.at_turn(join), |state, &leave| {
             let left = self.point(pass, leave - 1);
-            [0, 1].map(|flag| match left[flag] {
-                NOWHERE => state[flag],
+            std::array::from_fn(|flags| match left[flags] {
+                NOWHERE => state[flags],
                 at => {
                     let behind = self.node(pass.context, pc, Node::Leave { at });
-                    self.merge(pass, pc, [state[flag], behind])
+                    self.merge(pass, pc, [state[flags], behind])
                 }
             })
         })
     }
 
     /// Begin a branch; an instruction before its first.
-    fn branch(&mut self, pass: &mut Pass, pc: u32, fork: u32) -> ByFlag {
+    fn branch(&mut self, pass: &mut Pass, pc: u32, fork: u32) -> ByFlags {
         let function = self.graph.contexts[pass.context as usize].function;
         let context = self.new_context(function, pc, Some(fork));
         let Fork { pc: entrance, before, branches } = &mut self.graph.forks[fork as usize];
@@ -91,10 +95,11 @@ impl Builder<'_> {
         self.at_turn(entry)
     }
 
-    fn end_branch(&mut self, pass: &Pass, pc: u32, state: ByFlag) {
-        let [exit, _] = self.turn(pass, pc, state);
+    fn end_branch(&mut self, pass: &Pass, pc: u32, state: ByFlags) {
+        let [exit, ..] = self.turn(pass, pc, state);
         let context = &mut self.graph.contexts[pass.context as usize];
-        context.exits = [exit, NOWHERE];
+        context.exits = UNREACHED;
+        context.exits[0] = exit;
         let fork = context.fork.map(|fork| &mut self.graph.forks[fork as usize]);
         let branch = fork.and_then(|fork| fork.branches.last_mut());
         branch.into_iter().for_each(|branch| branch.end = pc);
