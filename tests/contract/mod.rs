@@ -29,8 +29,8 @@
 //!   `lands = LABEL` is behind that join, `at = LABEL` before that instruction; else control is at
 //!   the next instruction. `trap`, `fault`, `raises`, `due`, `stop` say why the step was none of
 //!   the ordinary; after a trap the state is that before the statement, and nothing is left to
-//!   say. - `back:` is exactly the state before, to the bit, and its clauses only repeat what of
-//!   that is
+//!   say.
+//! - `back:` is exactly the state before, to the bit, and its clauses only repeat what of that is
 //!   worth seeing; `refused = ".."` is a never, for the program's reason. `at = LABEL` is the state
 //!   that was there when control was at that instruction. `back, with:` is the same state but for
 //!   what the clauses say, for those opcodes that restore less by the programmer's own word, and
