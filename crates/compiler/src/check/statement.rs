@@ -528,23 +528,6 @@ impl<'s> Checker<'s> {
         checked
     }
 
-    /// `requires CONDITION else throw NAME`
-    fn requires(
-        &mut self,
-        condition: &ast::Expression<'s>,
-        error: Name<'s>,
-        span: Span,
-    ) -> Option<StatementKind> {
-        let condition = self.value(condition, &Need::new(ValueType::Bool, "`requires`"));
-        self.warn_of_constant(&condition, "leave the statement out, or ask for a reading");
-        self.lose_position("recovering from this error may move the arm", span);
-        let is_error = |meaning| matches!(meaning, Meaning::Error(_));
-        match self.resolve(error, "an error", is_error)? {
-            Meaning::Error(id) => Some(StatementKind::Requires(condition, id)),
-            _ => None,
-        }
-    }
-
     fn throw(&mut self, name: Name<'s>, span: Span) -> Checked {
         if self.movers.may_move_after(name.value) {
             self.lose_position("recovering from this error may move the arm", span);
