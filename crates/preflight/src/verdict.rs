@@ -56,7 +56,9 @@ pub(crate) fn because(found: &Rc<Verdict>, since: Option<Reason>) -> Rc<Verdict>
         // It was looked at; but where a move has failed, the arm may stand where it cannot.
         _ => found.grade() == Grade::NotKnown && since == Some(Reason::AfterFailure),
     };
-    since.filter(|_| is_so_since).map_or_else(|| found.clone(), |reason| Verdict::new(reason).into())
+    since
+        .filter(|_| is_so_since)
+        .map_or_else(|| found.clone(), |reason| Verdict::new(reason).into())
 }
 
 /// What a fault says of the motion that would meet it.

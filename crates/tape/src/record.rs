@@ -163,6 +163,8 @@ impl Switch {
 pub struct Fault {
     /// The error, by its place in the module's table.
     pub error: u16,
+    /// Whether it was pending before.
+    pub was_pending: bool,
     /// How many instructions lay between the start of the program and where it became one.
     pub steps: u64,
 }
@@ -171,12 +173,13 @@ impl Fault {
     /// What a word says.
     #[must_use]
     pub fn from_word(word: u64) -> Self {
-        Self { error: word as u16, steps: word >> 16 }
+        Self { error: word as u16, was_pending: word & 0x1_0000 != 0, steps: word >> 17 }
     }
 
     /// Push it.
     pub fn push(&self, recorder: &mut impl Recorder) {
-        recorder.fault(self.steps << 16 | u64::from(self.error));
+        let was_pending = u64::from(self.was_pending);
+        recorder.fault(self.steps << 17 | was_pending << 16 | u64::from(self.error));
     }
 
     /// Pop the newest.

@@ -663,7 +663,6 @@ impl Body<'_, '_> {
         let error = ErrorId(u16::from(self.pick(2)?));
         match self.pick(4)? {
             0 => drop(self.code.push(op::ErrorRaise { error })),
-            3 => drop(self.code.push(op::ErrorDue { error })),
             1 => drop(self.code.push(op::ErrorClear { error })),
             2 => drop(self.code.push(op::ErrorDue { error })),
             _ => {

@@ -11,7 +11,8 @@ use obverse_tape::record;
 use obverse_workcell::Workcell;
 
 impl Machine<'_> {
-    /// Let the fault that stopped the act at hand be an error of the program, which is now pending.
+    /// Let the fault that stopped the act at hand be an error of the program, which is now pending,
+    /// once however often it is raised.
     /// Whether it could be: nothing is done unless an act of the program itself was stopped going
     /// forward, the program declares the error, and the workcell lets a toggle be finished.
     pub fn raise(&mut self, error: ErrorId, cell: &mut dyn Workcell) -> bool {
@@ -27,9 +28,13 @@ impl Machine<'_> {
         self.state.pending = None;
         self.state.depth = 0;
         self.state.place.pc += 1;
-        self.state.raised.push(error);
+        let was_pending = self.state.raised.contains(&error);
+        if !was_pending {
+            self.state.raised.push(error);
+        }
         if let Some(tape) = &mut self.tape {
-            record::Fault { error: error.0, steps: self.state.steps() }.push(tape);
+            let steps = self.state.steps();
+            record::Fault { error: error.0, was_pending, steps }.push(tape);
         }
         true
     }
@@ -53,7 +58,7 @@ impl Machine<'_> {
             return;
         };
         record::Fault::pop(tape);
-        if self.state.raised.last() == Some(&ErrorId(fault.error)) {
+        if !fault.was_pending && self.state.raised.last() == Some(&ErrorId(fault.error)) {
             self.state.raised.pop();
         }
     }

@@ -1,12 +1,15 @@
-//! What an error says of incidents: the faults that raise it, and what recovering may cost.
+//! What an error says of incidents: the faults that raise it, and what recovering may cost; and
+//! what must hold lest one is thrown.
 
 use super::Checker;
 use super::errors::once;
+use super::expression::Need;
+use super::names::Meaning;
 use crate::faults::{NamedFault, named};
-use crate::tree::ExpressionKind;
+use crate::tree::{ExpressionKind, StatementKind};
 use crate::types::ValueType;
 use obverse_bytecode::{Bounds, FaultName};
-use obverse_syntax::ast::{self, Bound, FaultWord};
+use obverse_syntax::ast::{self, Bound, FaultWord, Name};
 use obverse_syntax::codes::Code;
 use obverse_syntax::diagnostic::Diagnostic;
 use obverse_syntax::span::{Span, Spanned};
@@ -101,5 +104,22 @@ impl<'s> Checker<'s> {
             _ => None,
         };
         Some((value.of_type, amount))
+    }
+
+    /// `requires CONDITION else throw NAME`
+    pub(super) fn requires(
+        &mut self,
+        condition: &ast::Expression<'s>,
+        error: Name<'s>,
+        span: Span,
+    ) -> Option<StatementKind> {
+        let condition = self.value(condition, &Need::new(ValueType::Bool, "`requires`"));
+        self.warn_of_constant(&condition, "leave the statement out, or ask for a reading");
+        self.lose_position("recovering from this error may move the arm", span);
+        let is_error = |meaning| matches!(meaning, Meaning::Error(_));
+        match self.resolve(error, "an error", is_error)? {
+            Meaning::Error(id) => Some(StatementKind::Requires(condition, id)),
+            _ => None,
+        }
     }
 }
