@@ -1,13 +1,14 @@
 //! The laws of the machine over generated modules: there and back, runs are steps, parsimony, write
-//! ahead, barrier, blocks, turns, round trips; those of the formatter and of inversion; those of
-//! compiler and machine together over generated programs, against the reference interpreter; and
-//! that of reach, over both and over modules of forks. `LAW_RUNS` sets how many programs each law
-//! sees; a failure prints the number of the program, and `LAW_SEED` runs that one alone.
+//! ahead, barrier, blocks, turns, round trips, and waits in forks; those of the formatter and of
+//! inversion; those of compiler and machine together over generated programs, against the reference
+//! interpreter; and that of reach, over both and over modules of forks. `LAW_RUNS` sets how many
+//! programs each law sees; a failure prints the number of the program, and `LAW_SEED` runs that one
+//! alone.
 
 use arbitrary::{Result, Unstructured};
 use obverse_testkit::{
     files, format_laws, front_laws, invert_laws, laws, machine_laws, preflight_laws, reach_laws,
-    word_laws,
+    wait_laws, word_laws,
 };
 use std::collections::BTreeSet;
 
@@ -68,6 +69,7 @@ laws! {
         write_ahead_with_blocks >= 60
         turns >= 12
         round_trips >= 100;
+    wait_laws(MANY_RUNS): waits_are_waited >= 10;
     preflight_laws(RUNS): foretells >= 60 foretells_of_modules >= 10;
     format_laws(MANY_RUNS): formats >= 100 cut_off >= 100;
     invert_laws(MANY_RUNS):

@@ -5,6 +5,7 @@ use super::{Result, run};
 use crate::cycle::{Cycle, Reading, Times};
 use crate::{Outcome, load, report, story, write};
 use obverse_bytecode::Module;
+use obverse_isa::Family;
 use obverse_recovery::{Ending, drive};
 use obverse_sim::Sim;
 use obverse_vm::{Direction, Limits};
@@ -27,7 +28,10 @@ const NOT_SHOWN: [&str; 3] = [
 
 /// What it does not show either, of a program with forks.
 const NOT_SHOWN_OF_FORKS: &str =
-    "the branches of a fork take turns here; what a cell does at once takes less time";
+    "in a fork, what branches wait for overlaps; what a cell is commanded at once takes less time";
+
+/// What is told of the time in which no branch of a fork can go on.
+const COMMON_WAIT: &str = "all branches of the fork wait";
 
 fn not_shown(cycle: &Cycle<'_>) -> impl Iterator<Item = &'static str> {
     NOT_SHOWN.into_iter().chain(cycle.has_branches.then_some(NOT_SHOWN_OF_FORKS))
@@ -76,7 +80,11 @@ fn sequences(module: &Module, cycle: &Cycle<'_>) -> Vec<Row> {
 fn actions(module: &Module, cycle: &Cycle<'_>) -> Vec<Row> {
     let row = |(&pc, times): (&u32, &Times)| {
         let line = module.place_of(pc).map(|(_, line, _)| line);
-        Row { name: story::said(module, pc), line, times: *times }
+        let name = match module.code[pc as usize].info().family {
+            Family::Task => COMMON_WAIT.to_owned(),
+            _ => story::said(module, pc),
+        };
+        Row { name, line, times: *times }
     };
     sorted(cycle.actions.iter().map(row).collect())
 }

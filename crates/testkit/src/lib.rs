@@ -21,6 +21,7 @@ pub mod preflight_laws;
 pub mod programs;
 pub mod reach_laws;
 pub mod reference;
+pub mod wait_laws;
 pub mod word_laws;
 
 pub use ledger::Ledger;

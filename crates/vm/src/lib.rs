@@ -13,6 +13,7 @@
 //! The machine knows nothing of source languages, of how a workcell does what it is told, or of
 //! when going back is wise.
 
+pub mod branches;
 pub mod class;
 pub mod convert;
 mod hot;
@@ -29,6 +30,7 @@ mod task;
 pub mod values;
 mod written;
 
+pub use branches::{Branches, branches, is_turn_of_motion};
 pub use link::{LinkError, Links};
 pub use machine::{Limits, Machine, Mark};
 pub use observe::{Event, Observer};
@@ -36,4 +38,4 @@ pub use pure::Calculator;
 pub use snapshot::SnapshotError;
 pub use state::{Direction, Frame, Pending, State};
 pub use stop::{Refusal, Stop, Trap, TrapKind};
-pub use task::{Branches, MAX_FORKS, branches};
+pub use task::MAX_FORKS;

@@ -1,12 +1,13 @@
 //! The machine: a verified program, its state, and its tape, run in either direction.
 
+use crate::branches::{self, Branches};
 use crate::hot::{self, Exit, Reversed};
 use crate::link::{LinkError, Links};
 use crate::observe::Observer;
 use crate::state::{Direction, Frame, State};
 use crate::step::{Host, Outcome};
 use crate::stop::Stop;
-use crate::task::{self, Branches};
+
 use obverse_bytecode::Verified;
 use obverse_isa::Class;
 use obverse_tape::{NoTape, Tape};
@@ -108,7 +109,7 @@ impl<'p> Machine<'p> {
             program,
             constants: module.constants.iter().map(|constant| constant.bits()).collect(),
             reversed: hot::reversed(&module.code),
-            branches: task::branches(&module.code),
+            branches: branches::branches(module),
             links,
             state,
             tape: Some(Tape::default()),

@@ -17,7 +17,7 @@ use obverse_workcell::{Fault, Goal, Motion, MotionEnd, Path};
 impl Acts<'_> {
     fn go(&mut self, goal: Goal, path: Path, force_limit_n: Option<f64>) -> Result<(), Failure> {
         let motion = Motion { goal, path, speed: self.speed()?, tool: self.tool(), force_limit_n };
-        self.report = Some(self.cell.execute(&motion)?);
+        self.done.report = Some(self.cell.execute(&motion)?);
         Ok(())
     }
 
@@ -41,7 +41,7 @@ impl Acts<'_> {
             force_limit_n,
         };
         let report = self.cell.execute(&motion)?;
-        self.report = Some(report);
+        self.done.report = Some(report);
         match (report.end, force_limit_n) {
             (MotionEnd::StoppedByForce, Some(limit_n)) => {
                 Err(Fault::ForceLimit { force_n: report.peak_force_n, limit_n }.into())
