@@ -198,17 +198,23 @@ fn folded(list: &str) -> Vec<String> {
     folded
 }
 
-/// The lines of each stretch: `12-15, 20`. A line that does nothing does not part them.
+/// The lines of each stretch: `12-15, 20`, those of each file after its name where there are
+/// several. A line that does nothing does not part them.
 fn lines(page: &Page) -> Vec<String> {
     let mut lines = vec![String::new(); page.stretches.len()];
-    // The stretch of the rows before, with the first and the last of their lines.
-    let mut open: Option<(usize, usize, usize)> = None;
-    let mut close = |open: Option<(usize, usize, usize)>| {
-        let Some((stretch, first, last)) = open else { return };
-        let separator = if lines[stretch].is_empty() { "" } else { ", " };
+    let mut named: Vec<Option<u16>> = vec![None; page.stretches.len()];
+    // The stretch of the rows before, with the first and the last of them.
+    let mut open: Option<(usize, &Row, usize)> = None;
+    let mut close = |open: Option<(usize, &Row, usize)>| {
+        let Some((stretch, row, last)) = open else { return };
+        let (told, first) = (&mut lines[stretch], row.number);
+        let separator = if told.is_empty() { "" } else { ", " };
+        let is_named = named[stretch].replace(row.file) == Some(row.file);
+        let file = page.files.get(usize::from(row.file)).filter(|_| !is_named);
+        let file = file.map_or(String::new(), |file| format!("{file}:"));
         let _ = match first == last {
-            true => write!(lines[stretch], "{separator}{first}"),
-            false => write!(lines[stretch], "{separator}{first}-{last}"),
+            true => write!(told, "{separator}{file}{first}"),
+            false => write!(told, "{separator}{file}{first}-{last}"),
         };
     };
     for row in &page.rows {
@@ -220,7 +226,7 @@ fn lines(page: &Page) -> Vec<String> {
             (Some((of, first, _)), Some(stretch)) if of == stretch => Some((of, first, row.number)),
             (before, stretch) => {
                 close(before);
-                stretch.map(|stretch| (stretch, row.number, row.number))
+                stretch.map(|stretch| (stretch, row, row.number))
             }
         };
     }
