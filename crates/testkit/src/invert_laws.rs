@@ -85,16 +85,7 @@ fn restricted(source: &str, other: &str, sequence: &str) -> String {
 }
 
 fn name_of<'s>(item: &Item<'s>) -> Option<&'s str> {
-    match item {
-        Item::Cell(_) | Item::Import(_) | Item::Signal(_) | Item::Allow(_) => None,
-        Item::Io(io) => Some(io.name.value),
-        Item::Joints(joints) => Some(joints.name.value),
-        Item::ItemDeclaration(item) => Some(item.name.value),
-        Item::Error(error) => Some(error.name.value),
-        Item::AdvancedMove(advanced) => Some(advanced.name.value),
-        Item::Variable(variable) => Some(variable.name.value),
-        Item::Sequence(sequence) => Some(sequence.name.value),
-    }
+    item.name().map(|name| name.value)
 }
 
 /// A sequence and then its inverse end in the state that the sequence and going back over it end
