@@ -1,21 +1,19 @@
 //! The laws of the machine over generated modules: there and back, runs are steps, parsimony, write
-//! ahead, barrier, blocks, turns, round trips; those of the formatter and of inversion; those of
-//! compiler and machine together over generated programs, against the reference interpreter; and
-//! that of reach, over both and over modules of forks. `LAW_RUNS` sets how many programs each law
-//! sees; a failure prints the number of the program, and `LAW_SEED` runs that one alone.
+//! ahead, barrier, blocks, turns, round trips, and waits in forks; those of the formatter and of
+//! inversion; those of compiler and machine together over generated programs, against the reference
+//! interpreter; and that of reach, over both and over modules of forks. `LAW_RUNS` sets how many
+//! programs each law sees; a failure prints the number of the program, and `LAW_SEED` runs that one
+//! alone.
 
 use arbitrary::{Result, Unstructured};
 use obverse_testkit::{
     always_laws, files, format_laws, front_laws, invert_laws, laws, machine_laws, preflight_laws,
-    reach_laws, recovery_laws, word_laws,
+    reach_laws, recovery_laws, wait_laws, word_laws,
 };
 use std::collections::BTreeSet;
 
-/// How many modules each law sees.
-const RUNS: u64 = 4_000;
-
-/// How many those see that are cheap, or that hold what people rely on before anything moves.
-const MANY_RUNS: u64 = 10_000;
+/// How many programs each law sees.
+const RUNS: u64 = 10_000;
 
 /// Random bytes that follow from a number.
 fn bytes(seed: u64) -> Vec<u8> {
@@ -31,10 +29,10 @@ fn bytes(seed: u64) -> Vec<u8> {
 }
 
 /// The law holds of every program, and of at least so many of a hundred it says something.
-fn holds_of(runs: u64, name: &str, law: fn(&mut Unstructured<'_>) -> Result<bool>, least: u64) {
+fn holds_of(name: &str, law: fn(&mut Unstructured<'_>) -> Result<bool>, least: u64) {
     let number = |variable: &str| std::env::var(variable).ok().and_then(|text| text.parse().ok());
     let alone: Option<u64> = number("LAW_SEED");
-    let runs = number("LAW_RUNS").unwrap_or(runs);
+    let runs = number("LAW_RUNS").unwrap_or(RUNS);
     let mut compared = 0;
     for seed in alone.map_or(0..runs, |seed| seed..seed + 1) {
         let held = std::panic::catch_unwind(|| law(&mut Unstructured::new(&bytes(seed))));
@@ -48,17 +46,17 @@ fn holds_of(runs: u64, name: &str, law: fn(&mut Unstructured<'_>) -> Result<bool
 }
 
 macro_rules! laws {
-    ($($module:ident($runs:ident): $($name:ident >= $least:literal)*;)*) => {$($(
+    ($($module:ident: $($name:ident >= $least:literal)*;)*) => {$($(
         #[test]
         fn $name() {
-            holds_of($runs, stringify!($name), $module::$name, $least);
+            holds_of(stringify!($name), $module::$name, $least);
         }
     )*)*};
 }
 
 // Of a hundred runs, how many must really be compared.
 laws! {
-    machine_laws(MANY_RUNS):
+    machine_laws:
         there_and_back >= 100
         runs_are_steps >= 90
         parsimony >= 100
@@ -68,17 +66,18 @@ laws! {
         write_ahead_with_blocks >= 60
         turns >= 12
         round_trips >= 100;
-    recovery_laws(RUNS): goes_back_along_the_trail >= 60 recovers_within_bounds >= 5;
-    preflight_laws(RUNS): foretells >= 60 foretells_of_modules >= 10;
-    format_laws(MANY_RUNS): formats >= 100 cut_off >= 100;
-    invert_laws(MANY_RUNS):
+    wait_laws: waits_are_waited >= 10;
+    recovery_laws: goes_back_along_the_trail >= 60 recovers_within_bounds >= 5;
+    preflight_laws: foretells >= 60 foretells_of_modules >= 10;
+    format_laws: formats >= 100 cut_off >= 100;
+    invert_laws:
         inverts_twice >= 45
         inverse_goes_back >= 45
         inverts_anything_twice >= 20;
-    laws(RUNS): compiles >= 100 agrees_forward >= 95 agrees_backward >= 75;
-    always_laws(RUNS): always_leads_where_the_arm_was >= 15;
-    files(RUNS): files_are_one_program >= 60;
-    word_laws(RUNS):
+    laws: compiles >= 100 agrees_forward >= 95 agrees_backward >= 75;
+    always_laws: always_leads_where_the_arm_was >= 15;
+    files: files_are_one_program >= 60;
+    word_laws:
         words_restore_the_program >= 50
         skipped_blocks_command_nothing >= 30
         replacements_command_what_they_say >= 30
@@ -90,17 +89,17 @@ laws! {
 
 #[test]
 fn reach_of_modules() {
-    holds_of(MANY_RUNS, "reach_of_modules", reach_laws::reach_of_modules, 8);
+    holds_of("reach_of_modules", reach_laws::reach_of_modules, 8);
 }
 
 #[test]
 fn reach_of_programs() {
-    holds_of(MANY_RUNS, "reach_of_programs", reach_laws::reach_of_programs, 90);
+    holds_of("reach_of_programs", reach_laws::reach_of_programs, 90);
 }
 
 #[test]
 fn reach_of_forks() {
-    holds_of(MANY_RUNS, "reach_of_forks", reach_laws::reach_of_forks, 25);
+    holds_of("reach_of_forks", reach_laws::reach_of_forks, 25);
 }
 
 /// What is said of points is met, by and by: the verdict is no larger than it needs to be, but for
@@ -121,12 +120,12 @@ fn reach_is_met() {
 
 #[test]
 fn a_program_cut_off_anywhere_gives_messages() {
-    holds_of(MANY_RUNS, "cut_off_anywhere", front_laws::cut_off_anywhere, 90);
+    holds_of("cut_off_anywhere", front_laws::cut_off_anywhere, 90);
 }
 
 #[test]
 fn line_ends_mean_nothing() {
-    holds_of(MANY_RUNS, "line_ends_mean_nothing", front_laws::line_ends_mean_nothing, 100);
+    holds_of("line_ends_mean_nothing", front_laws::line_ends_mean_nothing, 100);
 }
 
 #[test]

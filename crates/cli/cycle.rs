@@ -57,7 +57,8 @@ struct Call {
 }
 
 /// Counts the time of a run. The branches of a fork take turns in one cell: the time of a turn is
-/// that of its branch alone.
+/// that of its branch alone, and what all of them wait for is that of the one who does something
+/// next.
 pub(crate) struct Cycle<'m> {
     module: &'m Module,
     /// The calls under way, of one branch in their order.
@@ -166,6 +167,7 @@ impl Observer for Cycle<'_> {
                 let is_act = matches!(instr.info().family, Family::Kinematic | Family::Io);
                 if is_act || took_s > 0.0 {
                     let entry = self.module.source_at(event.pc);
+                    let entry = entry.filter(|_| instr.info().family != Family::Task);
                     let place = entry.map_or(event.pc, |entry| entry.first);
                     self.actions.entry(place).or_default().add(took_s);
                 }

@@ -2,6 +2,7 @@
 //!
 //! Knows the words; what was found it is given.
 
+use crate::report::{Lines, columns_of};
 use crate::{story, write};
 use obverse_bytecode::Module;
 use obverse_preflight::{Grade, Graded, MoveReport, Reason, Report};
@@ -15,9 +16,13 @@ pub(crate) fn tell(module: &Module, report: &Report) {
     if report.moves.is_empty() {
         return;
     }
-    let width = line_columns(module, report);
+    let mut lines = Lines::new(module);
+    let shown: Vec<String> = report.moves.iter().map(|found| lines.shown(found.pc)).collect();
+    let width = columns_of(shown.iter().map(String::as_str));
     write::line(&format!("\n{:>width$}  {:<TEXT_COLUMNS$}  grade", "line", "move"));
-    report.moves.iter().for_each(|found| row(module, found, width));
+    for (found, line) in report.moves.iter().zip(&shown) {
+        row(&mut lines, found, &format!("{line:>width$}"));
+    }
     write::line("");
     write::line(&counts(report));
     if !report.is_complete {
@@ -39,31 +44,26 @@ const GIVEN_UP: &str = "\
 the check was given up: there are too many ways through the program, rounds of a loop, or motions,
 to look at all of them; that a move looks fine says nothing";
 
-/// How wide the column of lines is.
-fn line_columns(module: &Module, report: &Report) -> usize {
-    let lines = report.moves.iter().filter_map(|found| line_of(module, found.pc));
-    lines.map(|line| line.chars().count()).max().unwrap_or(0).clamp(6, 40)
-}
-
-fn row(module: &Module, found: &MoveReport, width: usize) {
-    let line = line_of(module, found.pc).unwrap_or_default();
+/// The row of a move, whose line is given at the width of its column.
+fn row(lines: &mut Lines<'_>, found: &MoveReport, line: &str) {
+    let (module, width) = (lines.module, line.chars().count());
     let text = story::text_of(module, found.pc, module.code[found.pc as usize]);
     let (forward, reverse) = (found.forward.as_ref(), found.reverse.as_ref());
     let Some(first) = forward.or(reverse) else {
         let never = found.unseen;
         let grade = format!("{} ({})", never.grade().words(), never.code());
-        write::line(&format!("{line:>width$}  {text:<TEXT_COLUMNS$}  {grade}"));
+        write::line(&format!("{line}  {text:<TEXT_COLUMNS$}  {grade}"));
         return write::line(&format!("{:>width$}    {}", "", never.title()));
     };
     let alone = if forward.is_none() { ", in reverse alone" } else { "" };
-    write::line(&format!("{line:>width$}  {text:<TEXT_COLUMNS$}  {}{alone}", grade(first)));
-    more(module, first, width);
+    write::line(&format!("{line}  {text:<TEXT_COLUMNS$}  {}{alone}", grade(first)));
+    more(lines, first, width);
     if let (Some(there), Some(back)) = (forward, reverse)
         && differs(there.verdict.grade(), back.verdict.grade())
     {
         let label = format!("{:<TEXT_COLUMNS$}", "  in reverse");
         write::line(&format!("{:>width$}  {label}  {}", "", grade(back)));
-        more(module, back, width);
+        more(lines, back, width);
     }
 }
 
@@ -86,7 +86,7 @@ fn grade(graded: &Graded) -> String {
 }
 
 /// The line below a row: what was found, and by which calls.
-fn more(module: &Module, graded: &Graded, width: usize) {
+fn more(lines: &mut Lines<'_>, graded: &Graded, width: usize) {
     let verdict = &graded.verdict;
     if verdict.grade() == Grade::Reachable {
         return;
@@ -95,23 +95,14 @@ fn more(module: &Module, graded: &Graded, width: usize) {
         "" => verdict.reason.title(),
         detail => detail,
     };
-    let lines = lines_of(module, &graded.calls);
-    let called = match lines.is_empty() {
+    // The main sequence is called by nobody's line.
+    let calls = graded.calls.iter().skip(1).map(|&pc| lines.shown(pc));
+    let calls: Vec<String> = calls.filter(|line| !line.is_empty()).collect();
+    let called = match calls.is_empty() {
         true => String::new(),
-        false => format!("; called from line {}", lines.join(", ")),
+        false => format!("; called from line {}", calls.join(", ")),
     };
     write::line(&format!("{:>width$}    {said}{called}", ""));
-}
-
-/// The lines of the calls on the way to a move, but for that of the main sequence.
-fn lines_of(module: &Module, calls: &[u32]) -> Vec<String> {
-    calls.iter().skip(1).filter_map(|&pc| line_of(module, pc)).collect()
-}
-
-/// The line of an instruction, with its file where there are several.
-fn line_of(module: &Module, pc: u32) -> Option<String> {
-    let (file, line, _) = module.place_of(pc)?;
-    Some(if module.sources.len() > 1 { format!("{file}:{line}") } else { line.to_string() })
 }
 
 fn counts(report: &Report) -> String {

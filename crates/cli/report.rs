@@ -111,9 +111,12 @@ pub(crate) fn place(module: &Module, pc: Option<u32>) -> Value {
     object
 }
 
+/// How wide a column of lines of one file is.
+const LINE_COLUMNS: usize = 6;
+
 /// Where instructions were written. Each is looked for once, however often it is asked for.
 pub(crate) struct Lines<'m> {
-    module: &'m Module,
+    pub(crate) module: &'m Module,
     /// By the first instruction of what was written there.
     found: BTreeMap<u32, Option<(&'m str, usize)>>,
 }
@@ -148,6 +151,11 @@ impl<'m> Lines<'m> {
             _ => (names.max().unwrap_or(0) + 5).min(40),
         }
     }
+}
+
+/// How wide a column is that holds these lines of a program: that of a table of one file, or more.
+pub(crate) fn columns_of<'l>(lines: impl Iterator<Item = &'l str>) -> usize {
+    lines.map(|line| line.chars().count()).max().unwrap_or(0).max(LINE_COLUMNS)
 }
 
 /// The errors that are pending, by name.

@@ -217,6 +217,8 @@ pub(crate) fn outcome_of(module: &Module, event: &Event, cell: &dyn Workcell) ->
 fn forward_outcome(module: &Module, event: &Event, cell: &dyn Workcell) -> Option<String> {
     Some(match event.instr {
         Instr::OutputSet { bit, .. } | Instr::OutputToggle { bit, .. } => output(bit.0, cell),
+        // In a fork the others go on meanwhile.
+        Instr::Wait { .. } if !event.branches.is_empty() => "waits".to_owned(),
         Instr::Wait { .. } => "waited".to_owned(),
         Instr::WaitInput { bit, level, .. } => waited_for(bit.0, level, cell),
         Instr::SettingSet { setting: Setting::Tool, .. } => {

@@ -90,7 +90,7 @@ pub enum RecordKind {
     Joints,
     /// The locals, counters and remembered positions of a frame.
     Frame,
-    /// Which task's turn ended, and after how many steps.
+    /// Which task's turn ended, after how many steps, and the times that this changed: three words.
     Switch,
     /// The tasks that were held when a fork was left.
     Tasks,

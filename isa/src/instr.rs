@@ -300,13 +300,19 @@ impl Instr {
     }
 
     /// Whether a branch of a fork has had its turn when it has run this: it has commanded the
-    /// workcell, waited for it, or read what came of a motion. The turn goes on nevertheless if the
-    /// next instruction [reads](Self::reads_motion) that.
+    /// workcell, waited for it, or read what came of a motion.
     #[must_use]
     pub fn ends_turn(&self) -> bool {
         self.info().family.commands_workcell()
             || matches!(self, Self::WaitInput { .. })
             || self.reads_motion()
+    }
+
+    /// The same with the instruction that is next: what came of a motion is read in its own turn.
+    #[must_use]
+    pub fn ends_turn_before(&self, next: &Self) -> bool {
+        let is_motion = self.info().family == Family::Kinematic || self.reads_motion();
+        self.ends_turn() && !(is_motion && next.reads_motion())
     }
 
     /// Whether it reads what came of the last motion.

@@ -284,7 +284,8 @@ macro_rules! for_each_op {
 0xc3 ErrorDue "error.due" (error: ErrorId) [--] always error;
 
 /// Begin tasks, one a branch: the branches follow, set apart by `fork.next`, up to the `fork.join`. The
-/// first goes on; the others wait for their turns. In reverse all stand at their starts again.
+/// first that does not begin with a motion goes on; the others wait for their turns. In reverse all
+/// stand at their starts again.
 0xd0 Fork "fork" (join: Label) [--] always task;
 /// The end of a branch, and before the start of the next. Its task is done, and another one goes on; if
 /// it was the last, the program goes on behind the `fork.join`.
@@ -292,8 +293,8 @@ macro_rules! for_each_op {
 /// The end of the last branch, as `fork.next`, and where all come together. In reverse the turns of
 /// the tasks are taken back in the order in which they were taken.
 0xd2 ForkJoin "fork.join" (from: Label) [--] after_forward(Switch) task;
-/// Leave all branches from within one: the other tasks are held where they are, what they hold is
-/// saved, and the program goes on behind the `fork.join`.
+/// Leave all branches from within one, when what the others wait for has settled: the other tasks are
+/// held where they are, what they hold is saved, and the program goes on behind the `fork.join`.
 0xd3 ForkLeave "fork.leave" (join: Label) [--] after_forward(Tasks) task;
         }
     };

@@ -201,3 +201,52 @@ fn the_workcell_is_told_from_the_program_in_both_places() {
     bench.ends(0, &["build", "main.obv"]);
     bench.refuses(&["run", "main.obc", "--cell", "pin_cell.toml"], &["main.obv:3:6", "io.obv:2:1"]);
 }
+
+/// Whatever speaks of lines says of which file where there are several, in columns as wide as that.
+#[test]
+fn tables_name_the_files_of_their_lines() {
+    let bench = Bench::new("files_of_lines");
+    let poses = "joints home = [0, -90, 90, -90, -90, 0] deg
+action visit {
+  move to home
+}";
+    let main = "import \"taught_poses.obv\"
+sequence main {
+  wait until input 1 high for up to 1 s
+  irreversible \"glued\" { toggle 2 }
+  call visit
+  move to home
+}";
+    bench.write("taught_poses.obv", poses);
+    bench.write("main.obv", main);
+    let checked = bench.ends(0, &["check", "main.obv"]).stdout;
+    let columns = |table: &str, word: &str, lines: &[&str]| {
+        let header = table.lines().find(|line| line.trim_start().starts_with("line  "));
+        let column = header.and_then(|header| header.find(word)).expect("a table");
+        for line in lines {
+            let row = table.lines().find(|row| row.trim_start().starts_with(line));
+            let row = row.unwrap_or_else(|| panic!("no {line} in {table}"));
+            assert_eq!(row.find(line).map(|at| at + line.len() + 2), Some(column), "{table}");
+        }
+    };
+    columns(&checked, "move", &["taught_poses.obv:3", "main.obv:6"]);
+    let dry = bench.ends(0, &["run", "--dry", "main.obv"]).stdout;
+    let (sequences, rest) = dry.split_once("action  ").expect("two tables");
+    columns(sequences, "sequence", &["main.obv:2", "taught_poses.obv:2"]);
+    let (_, header) = sequences.rsplit_once('\n').expect("a header");
+    columns(&format!("{header}action  {rest}"), "action", &["main.obv:6", "taught_poses.obv:3"]);
+    assert!(dry.contains("main.obv:3  input 1"), "{dry}");
+    let rows = bench.ends(0, &["run", "--dry", "--json", "main.obv"]).json();
+    let visit = rows.iter().find(|row| row["text"] == "visit").expect("the action");
+    assert_eq!(
+        (visit["file"].as_str(), visit["line"].as_u64()),
+        (Some("taught_poses.obv"), Some(2))
+    );
+    let drawn = bench.ends(0, &["reach", "--ascii", "main.obv"]).stdout;
+    let at = |what: &str| drawn.find(what).unwrap_or_else(|| panic!("no {what} in {drawn}"));
+    assert!(at("  main.obv\n") < at("call visit") && at("call visit") < at("  taught_poses.obv\n"));
+    assert!(drawn.contains("main.obv:5-6, taught_poses.obv:3"), "{drawn}");
+    let reach = bench.ends(0, &["reach", "--json", "main.obv"]).json();
+    let stops = reach.iter().find(|row| row["text"] == "move to home").expect("the move");
+    assert_eq!(stops["stops"][0]["file"], "main.obv", "{stops}");
+}

@@ -135,6 +135,37 @@ fn the_times_of_a_dry_run_add_up() {
     assert!(real_s.is_some_and(|real_s| (real_s - cycle_s).abs() < 0.05 * cycle_s));
 }
 
+/// What settles beside a motion costs no time, whichever branch is written first.
+#[test]
+fn a_dry_run_shows_what_a_fork_saves() {
+    let bench = Bench::new("dry_fork");
+    let cycle_s = |body: &str| {
+        let program = format!(
+            "joints a = [0, -90, 90, -90, -90, 0] deg
+joints b = [40, -90, 90, -90, -90, 0] deg
+io close {{ set 1 high sleep 1 s }}
+sequence main {{ move to a speed slow {body} }}"
+        );
+        bench.write("f.obv", program);
+        let ran = bench.ends(0, &["run", "--dry", "--json", "f.obv"]);
+        let actions = ran.json().into_iter().filter(|line| line["type"] == "action");
+        let actions_s: f64 = actions.filter_map(|line| line["total_s"].as_f64()).sum();
+        let time_s = ran.summary()["time_s"].as_f64().expect("it has a time");
+        assert!((actions_s - time_s).abs() < 1e-9, "{body}: {actions_s} s of {time_s} s");
+        time_s
+    };
+    let motion_s = cycle_s("move to b");
+    assert!(motion_s > 1.5, "{motion_s}");
+    assert!(cycle_s("move to b io close") > motion_s + 0.9);
+    for fork in ["fork { move to b } and { io close }", "fork { io close } and { move to b }"] {
+        let fork_s = cycle_s(fork);
+        assert!((fork_s - motion_s).abs() < 1e-6, "{fork}: {fork_s} s, and {motion_s} s without");
+    }
+    // Here the other branch waits when one has ended.
+    let fork_s = cycle_s("fork { move to b } and { wait 9 s }");
+    assert!((fork_s - 9.0).abs() < 1e-6, "{fork_s}");
+}
+
 #[test]
 fn a_dry_run_that_ends_otherwise_says_so() {
     let bench = Bench::new("dry_fault");

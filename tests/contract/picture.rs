@@ -104,13 +104,24 @@ pub(crate) fn differences(expected: &Picture, found: &Picture) -> Vec<String> {
     differing.map(line).collect()
 }
 
-/// The end of a turn: `TASK after STEPS`, and `left` where the fork was.
-fn switch(what: &str) -> Result<u64, String> {
-    let wrong = || format!("`{what}` is not `TASK after STEPS`");
+/// The end of a turn: `TASK after STEPS`, where it was not the start of the fork the time before it
+/// as `at MILLISECONDS`, where the task that is next waited `until MILLISECONDS`, and `left` where
+/// the fork was.
+fn switch(what: &str) -> Result<Vec<u64>, String> {
     let (what, leaves) = what.strip_suffix(" left").map_or((what, 0), |what| (what, 1));
+    let (what, until_ns) = time(what, " until ")?;
+    let (what, now_ns) = time(what, " at ")?;
+    let wrong = || format!("`{what}` is not `TASK after STEPS`");
     let (task, steps) = what.split_once(" after ").ok_or_else(wrong)?;
     let number = |text: &str| text.parse::<u64>().map_err(|_| wrong());
-    Ok(number(steps)? << 9 | leaves << 8 | number(task)?)
+    Ok(vec![now_ns, until_ns, number(steps)? << 9 | leaves << 8 | number(task)?])
+}
+
+/// What is before a word, and the milliseconds behind it as nanoseconds; none without the word.
+fn time<'w>(what: &'w str, word: &str) -> Result<(&'w str, u64), String> {
+    let Some((before, time_ms)) = what.split_once(word) else { return Ok((what, 0)) };
+    let time_ms: u64 = time_ms.parse().map_err(|_| format!("`{time_ms}` is no time"))?;
+    Ok((before, time_ms * 1_000_000))
 }
 
 /// What the words of a contract mean.
@@ -214,8 +225,8 @@ impl Words<'_> {
                 "bit" => ("tape bits", vec![self.word(what)?]),
                 "word" => ("tape words", vec![self.word(what)?]),
                 "joints" => ("tape joints", bits(&self.joints(what)?)),
-                "switch" => ("tape control", vec![switch(what)?]),
-                "held" => ("tape control", vec![self.held(what)?]),
+                "switch" => ("tape control", switch(what)?),
+                "held" => ("tape control", self.held(what)?),
                 "call" => ("tape control", vec![self.call(what)?]),
                 _ => return Err(format!("`{kind}` is no kind of record")),
             };
@@ -224,11 +235,13 @@ impl Words<'_> {
         Ok(())
     }
 
-    /// Where a task is held: `LABEL`, or `LABEL with CALLS`.
-    fn held(&self, what: &str) -> Result<u64, String> {
+    /// Where a task is held: `LABEL`, or `LABEL with CALLS`, and where it waited
+    /// `until MILLISECONDS`.
+    fn held(&self, what: &str) -> Result<Vec<u64>, String> {
+        let (what, until_ns) = time(what, " until ")?;
         let (label, calls) = what.split_once(" with ").unwrap_or((what, "0"));
         let calls: u64 = calls.parse().map_err(|_| format!("`{calls}` is no number"))?;
-        Ok(calls << 33 | u64::from(self.label(label)?))
+        Ok(vec![until_ns, calls << 33 | u64::from(self.label(label)?)])
     }
 
     /// A call of a task that is held: `FUNCTION to LABEL`, where the caller goes on.

@@ -306,7 +306,7 @@ impl<'t> Trial<'t> {
             Class::AfterForward(RecordKind::Word) => [0, 1, 0, 0],
             Class::AfterForward(RecordKind::Counter) => [0, 3, 0, 0],
             Class::AfterForward(RecordKind::Joints) => [0, 0, 6, 0],
-            Class::AfterForward(RecordKind::Switch) => [0, 0, 0, 1],
+            Class::AfterForward(RecordKind::Switch) => [0, 0, 0, 3],
             // A frame is as large as its function says, and so are tasks; a never drops what is
             // there.
             Class::AfterForward(RecordKind::Frame | RecordKind::Tasks) | Class::Never(_) => grown,

@@ -7,6 +7,8 @@ use obverse_preflight::Reason;
 const ITEMS: &str = r#"obvasm 1
 .const real 0.0
 .const real 0.01
+.const real 0.1
+.const real 0.3
 .const real 3.0
 .keyframe "above"
 .keyframe "grasp"
@@ -48,14 +50,62 @@ fn wall() -> String {
     with_wall(450, -150, 60)
 }
 
+/// A wait of so many seconds, which must be among the constants.
+fn wait(duration_s: &str) -> String {
+    format!("push.const {duration_s}\n    wait\n    ")
+}
+
 /// The gripper that closes first takes the part, which does not get over the wall; one that closes
-/// when the arm has left takes nothing.
+/// when the arm has left takes nothing. A branch that begins with a motion begins last.
 #[test]
 fn branches_take_turns_in_their_order() {
-    let taken = Found::of_assembly(&wall(), &fork(TAKE, CARRY));
-    assert_eq!(taken.forward(2).verdict.reason, Reason::HeldCollides);
-    let left = Found::of_assembly(&wall(), &fork(CARRY, TAKE));
+    for (first, second) in [(TAKE, CARRY), (CARRY, TAKE)] {
+        let taken = Found::of_assembly(&wall(), &fork(first, second));
+        assert_eq!(taken.forward(2).verdict.reason, Reason::HeldCollides);
+    }
+    let left = Found::of_assembly(&wall(), &fork(CARRY, &(wait("0.0") + TAKE)));
     assert!(left.report.is_fine(true), "{:?}", left.report);
+}
+
+/// Who waits has no turn until the time is over, by what the motions take: the gripper closes on
+/// the part before the arm leaves, behind its first motion, or when it has come back.
+#[test]
+fn who_waits_is_passed_over() {
+    let up = "push.const 0.01\n    move.relative +z, base\n    ";
+    let down = "push.const 0.01\n    move.relative -z, base\n    ";
+    let there_and_back = format!("{up}{down}{CARRY}");
+    let fault = |waits: &str| {
+        let program = fork(&(waits.to_owned() + TAKE), &there_and_back);
+        let found = Found::of_assembly(&wall(), &program);
+        let carried = found.forward(4).verdict.reason;
+        assert!(
+            carried == Reason::HeldCollides || found.report.is_fine(true),
+            "{:?}",
+            found.report
+        );
+        carried
+    };
+    assert_eq!(fault(""), Reason::HeldCollides);
+    // Behind the first motion nothing is near enough.
+    assert_eq!(fault(&wait("0.0")), Reason::Fine);
+    // The first motion takes longer than this, and this ends while the second one is made.
+    assert_eq!(fault(&wait("0.1")), Reason::Fine);
+    assert_eq!(fault(&wait("0.3")), Reason::HeldCollides);
+    // All of them together take less.
+    assert_eq!(fault(&wait("3.0")), Reason::Fine);
+}
+
+/// How long a wait takes that depends on an input is not known: the branches go on in every order.
+#[test]
+fn where_times_are_not_known_every_order_is_followed() {
+    let read = ".function \"$start\" start\n    .local late real\n    enter\n    draw late";
+    let late = format!("push.local late\n    wait\n    {TAKE}");
+    let up = "push.const 0.01\n    move.relative +z, base\n    ";
+    let program = fork(&late, &format!("{up}{CARRY}"));
+    let program = program.replacen(".function \"$start\" start\n    enter", read, 1);
+    let found = Found::of_assembly(&wall(), &program);
+    assert!(found.report.is_complete);
+    assert!(found.forward(2).visits > 1 && found.forward(3).visits > 1, "{:?}", found.report);
 }
 
 /// The same in the language, where one branch alone moves the arm.
@@ -78,8 +128,7 @@ sequence main {
 /// A wait is an act: it takes a turn, and lets the arm leave.
 #[test]
 fn every_act_takes_a_turn() {
-    let wait = "push.const 0.0\n    wait\n    ";
-    let found = Found::of_assembly(&wall(), &fork(&format!("{wait}{TAKE}"), CARRY));
+    let found = Found::of_assembly(&wall(), &fork(&(wait("0.0") + TAKE), CARRY));
     assert!(found.report.is_fine(true), "{:?}", found.report);
     // What is no act takes none.
     let set = "push.speed slow\n    setting.set speed\n    ";
@@ -96,8 +145,7 @@ fn a_pending_error_holds_the_turn() {
     .respond after_action
     .then stop
 .function";
-    let wait = "push.const 0.0\n    wait\n    ";
-    let branch = format!("error.raise jam\n    {wait}{TAKE}\n    error.clear jam");
+    let branch = format!("error.raise jam\n    {}{TAKE}\n    error.clear jam", wait("0.0"));
     let program = fork(&branch, CARRY).replacen(".function", error, 1);
     let found = Found::of_assembly(&wall(), &program);
     assert_eq!(found.forward(2).verdict.reason, Reason::HeldCollides);
@@ -137,7 +185,7 @@ fn turns_are_taken_back_in_reverse() {
     let held = Found::of_assembly(&wall(), &program(closed, lift));
     assert_eq!(held.forward(1).verdict.reason, Reason::Fine);
     assert_eq!(held.reverse(1).verdict.reason, Reason::HeldCollides);
-    let left = Found::of_assembly(&wall(), &program(lift, closed));
+    let left = Found::of_assembly(&wall(), &program(lift, &(wait("0.0") + closed)));
     assert_eq!(left.reverse(1).verdict.reason, Reason::Fine);
 }
 

@@ -3,8 +3,10 @@
 
 use super::{Result, run};
 use crate::cycle::{Cycle, Reading, Times};
+use crate::report::{Lines, columns_of};
 use crate::{Outcome, load, report, story, write};
 use obverse_bytecode::Module;
+use obverse_isa::Family;
 use obverse_recovery::{Ending, drive};
 use obverse_sim::Sim;
 use obverse_vm::{Direction, Limits};
@@ -27,16 +29,19 @@ const NOT_SHOWN: [&str; 3] = [
 
 /// What it does not show either, of a program with forks.
 const NOT_SHOWN_OF_FORKS: &str =
-    "the branches of a fork take turns here; what a cell does at once takes less time";
+    "in a fork, what branches wait for overlaps; what a cell is commanded at once takes less time";
+
+/// What is told of the time in which no branch of a fork can go on.
+const COMMON_WAIT: &str = "all branches of the fork wait";
 
 fn not_shown(cycle: &Cycle<'_>) -> impl Iterator<Item = &'static str> {
     NOT_SHOWN.into_iter().chain(cycle.has_branches.then_some(NOT_SHOWN_OF_FORKS))
 }
 
-/// A line of a table: its name, the line it is written in, and its times.
+/// A line of a table: its name, the instruction that it is about, and its times.
 struct Row {
     name: String,
-    line: Option<usize>,
+    pc: u32,
     times: Times,
 }
 
@@ -67,36 +72,38 @@ fn sorted(mut rows: Vec<Row>) -> Vec<Row> {
 fn sequences(module: &Module, cycle: &Cycle<'_>) -> Vec<Row> {
     let row = |(&index, times): (&usize, &Times)| {
         let function = &module.functions[index];
-        let line = module.place_of(function.first).map(|(_, line, _)| line);
-        Row { name: function.name.clone(), line, times: *times }
+        Row { name: function.name.clone(), pc: function.first, times: *times }
     };
     sorted(cycle.sequences.iter().map(row).collect())
 }
 
 fn actions(module: &Module, cycle: &Cycle<'_>) -> Vec<Row> {
     let row = |(&pc, times): (&u32, &Times)| {
-        let line = module.place_of(pc).map(|(_, line, _)| line);
-        Row { name: story::said(module, pc), line, times: *times }
+        let name = match module.code[pc as usize].info().family {
+            Family::Task => COMMON_WAIT.to_owned(),
+            _ => story::said(module, pc),
+        };
+        Row { name, pc, times: *times }
     };
     sorted(cycle.actions.iter().map(row).collect())
 }
 
 fn tell(module: &Module, cycle: &Cycle<'_>, ending: &Ending, total_s: f64) {
     write::line(&format!("{}; a cycle takes {total_s:.2} s", report::ending_words(module, ending)));
-    table("sequence", &sequences(module, cycle), total_s);
+    table(module, "sequence", &sequences(module, cycle), total_s);
     let mut actions = actions(module, cycle);
     let left_out = actions.split_off(actions.len().min(ACTIONS_MAX));
-    table("action", &actions, total_s);
+    table(module, "action", &actions, total_s);
     if !left_out.is_empty() {
         let rest_s: f64 = left_out.iter().map(|row| row.times.total_s).sum();
         write::line(&format!("        and {} more, {rest_s:.2} s together", left_out.len()));
     }
-    let readings = readings(module, cycle);
+    let readings = readings(cycle);
     if !readings.is_empty() {
-        write::line("\n  line  what was read on the way");
-        for (line, what) in readings {
-            let line = line.map_or_else(String::new, |line| line.to_string());
-            write::line(&format!("{line:>6}  {what}"));
+        let (lines, width) = lines(module, readings.iter().map(|(pc, _)| *pc));
+        write::line(&format!("\n{:>width$}  what was read on the way", "line"));
+        for (line, (_, what)) in lines.iter().zip(&readings) {
+            write::line(&format!("{line:>width$}  {what}"));
         }
     }
     let (guarded, stopped) = cycle.guarded;
@@ -107,23 +114,32 @@ fn tell(module: &Module, cycle: &Cycle<'_>, ending: &Ending, total_s: f64) {
     not_shown(cycle).for_each(|what| write::line(&format!("- {what}")));
 }
 
-fn table(what: &str, rows: &[Row], total_s: f64) {
+/// The lines of instructions, and how wide a column of them is.
+fn lines(module: &Module, pcs: impl Iterator<Item = u32>) -> (Vec<String>, usize) {
+    let mut lines = Lines::new(module);
+    let shown: Vec<String> = pcs.map(|pc| lines.shown(pc)).collect();
+    let width = columns_of(shown.iter().map(String::as_str));
+    (shown, width)
+}
+
+fn table(module: &Module, what: &str, rows: &[Row], total_s: f64) {
     if rows.is_empty() {
         return;
     }
+    let (lines, width) = lines(module, rows.iter().map(|row| row.pc));
     write::line(&format!(
-        "\n  line  {what:<TEXT_COLUMNS$} times total s  share least s  mean s  most s"
+        "\n{:>width$}  {what:<TEXT_COLUMNS$} times total s  share least s  mean s  most s",
+        "line"
     ));
-    for row in rows {
+    for (row, line) in rows.iter().zip(&lines) {
         let times = &row.times;
         let share = share(times, total_s);
-        let line = row.line.map_or_else(String::new, |line| line.to_string());
         let name: String = row.name.chars().take(TEXT_COLUMNS).collect();
         let (least, mean, most) = (times.least_s, times.mean_s(), times.most_s);
         let bar = "#".repeat((share * BAR_COLUMNS as f64).round().clamp(0.0, 99.0) as usize);
         let text = format!(
-            "{line:>6}  {name:<TEXT_COLUMNS$} {:>5} {:>7.2} {:>4.0} % {least:>7.2} {mean:>7.2} \
-             {most:>7.2}  {bar}",
+            "{line:>width$}  {name:<TEXT_COLUMNS$} {:>5} {:>7.2} {:>4.0} % {least:>7.2} \
+             {mean:>7.2} {most:>7.2}  {bar}",
             times.count,
             times.total_s,
             share * 1e2,
@@ -137,12 +153,9 @@ fn share(times: &Times, total_s: f64) -> f64 {
     if total_s > 0.0 { times.total_s / total_s } else { 0.0 }
 }
 
-/// What was read, by line, in words.
-fn readings(module: &Module, cycle: &Cycle<'_>) -> Vec<(Option<usize>, String)> {
-    let told = |(&pc, readings): (&u32, &Vec<Reading>)| {
-        (module.place_of(pc).map(|(_, line, _)| line), in_words(readings))
-    };
-    cycle.readings.iter().map(told).collect()
+/// What was read, by instruction, in words.
+fn readings(cycle: &Cycle<'_>) -> Vec<(u32, String)> {
+    cycle.readings.iter().map(|(&pc, readings)| (pc, in_words(readings))).collect()
 }
 
 fn in_words(readings: &[Reading]) -> String {
@@ -187,11 +200,16 @@ fn in_words(readings: &[Reading]) -> String {
 }
 
 fn tell_machines(module: &Module, cycle: &Cycle<'_>, ending: &Ending, total_s: f64) {
+    let placed = |mut object: Value, pc: u32| {
+        let place = module.place_of(pc);
+        object["file"] = json!(place.map(|(file, _, _)| file));
+        object["line"] = json!(place.map(|(_, line, _)| line));
+        object
+    };
     let objects = |kind: &str, rows: Vec<Row>| -> Vec<Value> {
         let object = |row: &Row| {
-            json!({
+            let object = json!({
                 "type": kind,
-                "line": row.line,
                 "text": row.name,
                 "count": row.times.count,
                 "total_s": row.times.total_s,
@@ -199,17 +217,16 @@ fn tell_machines(module: &Module, cycle: &Cycle<'_>, ending: &Ending, total_s: f
                 "least_s": row.times.least_s,
                 "mean_s": row.times.mean_s(),
                 "most_s": row.times.most_s,
-            })
+            });
+            placed(object, row.pc)
         };
         rows.iter().map(object).collect()
     };
-    let reading = |(line, what): (Option<usize>, String)| {
-        let kind = "reading";
-        json!({ "type": kind, "line": line, "text": what })
-    };
+    let reading =
+        |(pc, what): (u32, String)| placed(json!({ "type": "reading", "text": what }), pc);
     let sequences = objects("sequence", sequences(module, cycle));
     let actions = objects("action", actions(module, cycle));
-    let readings = readings(module, cycle).into_iter().map(reading);
+    let readings = readings(cycle).into_iter().map(reading);
     let all = sequences.into_iter().chain(actions).chain(readings);
     all.for_each(|object| write::line(&object.to_string()));
     let mut more = Map::new();

@@ -14,7 +14,7 @@ use obverse_geometry::Pose;
 use obverse_isa::{Family, Instr, KeyframeId, LocalId, Setting, SpeedId};
 use obverse_sim::cell::InputRule;
 use obverse_vm::{Direction, convert};
-use obverse_workcell::{Items, Path, Speed, ToolId};
+use obverse_workcell::{Items, MotionEnd, Path, Speed, ToolId};
 use std::rc::Rc;
 
 /// The operands of an effect.
@@ -310,6 +310,10 @@ impl Explorer<'_> {
         // What is read of a motion that waits for no contact is noise.
         let peak_n = answer.report.filter(|_| is_guarded).map(|report| report.peak_force_n);
         state.peak_force = number(peak_n);
+        // Where contact ends a motion, and so when, is not known to the last bit.
+        let exact = answer.report.filter(|report| report.end == MotionEnd::Reached);
+        let exact = exact.filter(|_| !state.forks.is_empty());
+        state.duration = number(exact.map(|report| report.duration_s));
         let before = state.world;
         let arrive = |explorer: &mut Self, mut state: State, after: WorldId| {
             let is_planned = state.is_planned;
@@ -322,7 +326,7 @@ impl Explorer<'_> {
         };
         if let Some(otherwise) = answer.otherwise.filter(|_| answer.report.is_some()) {
             let mut other = self.copy(&state);
-            (other.distance, other.peak_force) = (None, None);
+            (other.distance, other.peak_force, other.duration) = (None, None, None);
             (other.is_planned, other.is_certain) = (false, false);
             let other = arrive(self, other, otherwise);
             self.open.push(other);

@@ -120,7 +120,7 @@ impl Explorer<'_> {
         let mut frame = Frame::new(function.index(), declared, state.pc + 1);
         frame.begin_with(state.frame(), declared);
         // Going back moves too, so that what the last motion reported is another one.
-        (state.distance, state.peak_force) = (None, None);
+        (state.distance, state.peak_force, state.duration) = (None, None, None);
         state.frames = vec![frame];
         (state.blocks, state.forks) = (Vec::new(), Vec::new());
         state.world = world;

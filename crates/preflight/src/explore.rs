@@ -63,7 +63,7 @@ impl<'m> Explorer<'m> {
     pub(crate) fn new(values: Values<'m>, worlds: Worlds) -> (Self, NodeId) {
         let (trace, begin) = Trace::new(worlds.start());
         let explorer = Self {
-            branches: branches(&values.module.code),
+            branches: branches(values.module),
             values,
             worlds,
             trace,

@@ -93,6 +93,7 @@ pub fn check(program: &Verified, cell: &Cell) -> Result<Report, Vec<LinkError>> 
         world: explorer.worlds.start(),
         distance: Some(0),
         peak_force: Some(0),
+        duration: Some(0),
         is_planned: true,
         is_certain: true,
         since: None,

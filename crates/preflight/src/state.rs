@@ -36,9 +36,10 @@ pub(crate) struct State {
     /// The errors that are pending, oldest first.
     pub(crate) raised: Option<Vec<ErrorId>>,
     pub(crate) world: WorldId,
-    /// What the last motion reported, in metres and in newtons.
+    /// What the last motion reported, in metres, in newtons and, in a fork, in seconds.
     pub(crate) distance: Word,
     pub(crate) peak_force: Word,
+    pub(crate) duration: Word,
     /// Whether everything so far went as it does where all is at the place that the file gives.
     pub(crate) is_planned: bool,
     /// Whether every decision so far was known, so that this is the only way.
@@ -150,15 +151,22 @@ impl State {
             && covers_all(self.globals.iter(), other.globals.iter())
             && covers_all(self.settings.iter(), other.settings.iter())
             && (self.raised.is_none() || self.raised == other.raised)
-            && covers_all(
-                [self.distance, self.peak_force].iter(),
-                [other.distance, other.peak_force].iter(),
-            )
+            && covers_all(self.reported().iter(), other.reported().iter())
+            && covers_all(self.times(), other.times())
             && frames().all(|(frame, other)| covers_all(frame.words(), other.words()))
             && frames().all(|(frame, other)| {
                 let mut slots = frame.slots.iter().zip(&other.slots);
                 slots.all(|(slot, other)| slot.is_none() || same_position(slot, other))
             })
+    }
+
+    fn reported(&self) -> [Word; 3] {
+        [self.distance, self.peak_force, self.duration]
+    }
+
+    /// The times of the forks.
+    fn times(&self) -> impl Iterator<Item = &Word> {
+        self.forks.iter().flat_map(Fork::times)
     }
 
     /// Forget all in which `other` differs, but for the workcell.
@@ -172,6 +180,9 @@ impl State {
         self.settings.iter_mut().zip(&other.settings).for_each(|(word, other)| meet(word, other));
         meet(&mut self.distance, &other.distance);
         meet(&mut self.peak_force, &other.peak_force);
+        meet(&mut self.duration, &other.duration);
+        let times = self.forks.iter_mut().flat_map(Fork::times_mut);
+        times.zip(other.times()).for_each(|(time, other)| meet(time, other));
         if self.raised != other.raised {
             self.raised = None;
         }
@@ -193,7 +204,7 @@ impl State {
         self.settings = [None; Setting::ALL.len()];
         self.raised = None;
         self.world = nothing_known;
-        (self.distance, self.peak_force) = (None, None);
+        (self.distance, self.peak_force, self.duration) = (None, None, None);
         self.is_certain = false;
     }
 

@@ -45,6 +45,24 @@ pub enum Item<'s> {
     Allow(Allow<'s>),
 }
 
+impl<'s> Item<'s> {
+    /// The name that it declares, if it declares one.
+    #[must_use]
+    pub fn name(&self) -> Option<Name<'s>> {
+        match self {
+            Self::Cell(_) | Self::Import(_) | Self::Cleanup(_) | Self::Allow(_) => None,
+            Self::Signal(signal) => Some(signal.name),
+            Self::Io(io) => Some(io.name),
+            Self::Joints(joints) => Some(joints.name),
+            Self::ItemDeclaration(item) => Some(item.name),
+            Self::Error(error) => Some(error.name),
+            Self::AdvancedMove(advanced) => Some(advanced.name),
+            Self::Variable(variable) => Some(variable.name),
+            Self::Sequence(sequence) => Some(sequence.name),
+        }
+    }
+}
+
 /// What is done at the end of the program, whatever came before.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Cleanup<'s> {

@@ -71,6 +71,8 @@ pub struct ForkSnapshot {
     pub current: u8,
     /// How many steps have been made in this turn.
     pub turn_steps: u64,
+    /// How much time has passed in it, in nanoseconds.
+    pub now_ns: u64,
     /// The tasks by branch; that whose turn it is has nothing of its own here.
     pub tasks: Vec<TaskSnapshot>,
 }
@@ -82,6 +84,8 @@ pub struct TaskSnapshot {
     pub pc: u32,
     /// Whether it has come to its end.
     pub is_done: bool,
+    /// Until when it waits, in nanoseconds of the fork's time.
+    pub until_ns: u64,
     /// Its calls, outermost first.
     pub frames: Vec<FrameSnapshot>,
 }

@@ -128,7 +128,7 @@ impl Frame {
     }
 }
 
-/// Whose turn ended, and after how many steps.
+/// Whose turn ended, after how many steps, and the times that this changed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Switch {
     /// The task, by its branch.
@@ -137,23 +137,33 @@ pub struct Switch {
     pub steps: u64,
     /// Whether it left the fork and the other tasks where they were.
     pub leaves: bool,
+    /// The time of the fork before, in nanoseconds.
+    pub now_ns: u64,
+    /// Until when the task waited that is next, in nanoseconds.
+    pub until_ns: u64,
 }
 
 impl Switch {
-    /// What a word says.
+    /// What the newest of its words says; the times are in those before.
     #[must_use]
     pub fn from_word(word: u64) -> Self {
-        Self { task: word as u8, steps: word >> 9, leaves: word & 0x100 != 0 }
+        let (task, steps, leaves) = (word as u8, word >> 9, word & 0x100 != 0);
+        Self { task, steps, leaves, now_ns: 0, until_ns: 0 }
     }
 
     /// Push it.
     pub fn push(&self, recorder: &mut impl Recorder) {
+        recorder.control(self.now_ns);
+        recorder.control(self.until_ns);
         recorder.control(self.steps << 9 | u64::from(self.leaves) << 8 | u64::from(self.task));
     }
 
     /// Pop the newest.
     pub fn pop(tape: &mut Tape) -> Option<Self> {
-        tape.control.pop().map(Self::from_word)
+        let switch = tape.control.pop().map(Self::from_word)?;
+        let until_ns = tape.control.pop()?;
+        let now_ns = tape.control.pop()?;
+        Some(Self { now_ns, until_ns, ..switch })
     }
 }
 
@@ -201,6 +211,8 @@ pub struct HeldTask {
     pub pc: u32,
     /// Whether it had come to its end.
     pub is_done: bool,
+    /// Until when it waited, in nanoseconds of the fork's time.
+    pub until_ns: u64,
     /// Its calls, outermost first: the function, and where the caller goes on.
     pub calls: Vec<(u16, u32)>,
 }
@@ -216,6 +228,7 @@ impl Tasks {
             for (function, return_pc) in &task.calls {
                 recorder.control(u64::from(*function) << 32 | u64::from(*return_pc));
             }
+            recorder.control(task.until_ns);
             let calls = task.calls.len() as u64;
             recorder.control(calls << 33 | u64::from(task.is_done) << 32 | u64::from(task.pc));
         }
@@ -225,10 +238,12 @@ impl Tasks {
     pub fn pop(tape: &mut Tape, branches: usize) -> Option<Self> {
         pop_many(branches, || {
             let word = tape.control.pop()?;
+            let until_ns = tape.control.pop()?;
             let count = usize::try_from(word >> 33).ok().filter(|&n| n <= tape.control.len())?;
             let call = |word: u64| ((word >> 32) as u16, word as u32);
             let calls = pop_many(count, || tape.control.pop().map(call))?;
-            Some(HeldTask { pc: word as u32, is_done: word & 1 << 32 != 0, calls })
+            let (pc, is_done) = (word as u32, word & 1 << 32 != 0);
+            Some(HeldTask { pc, is_done, until_ns, calls })
         })
         .map(Self)
     }

@@ -256,12 +256,13 @@ fn alter_fork(u: &mut Unstructured<'_>, forks: &mut Vec<ForkSnapshot>) -> Result
     let at = u.choose_index(forks.len())?;
     let fork = &mut forks[at];
     let task = u.choose_index(fork.tasks.len().max(1))?;
-    match u.int_in_range(0..=7_u8)? {
+    match u.int_in_range(0..=9_u8)? {
         0 => fork.at = near(u, fork.at)?,
         1 => fork.base = near(u, fork.base)?,
         2 => fork.current = u.int_in_range(0..=4)?,
         3 => fork.turn_steps = extreme(u)?,
         4 => drop(fork.tasks.pop()),
+        8 => fork.now_ns = extreme(u)?,
         5 => {
             let again = forks[at].clone();
             forks.resize(u.int_in_range(0..=100)?, again);
@@ -270,6 +271,7 @@ fn alter_fork(u: &mut Unstructured<'_>, forks: &mut Vec<ForkSnapshot>) -> Result
             let Some(task) = fork.tasks.get_mut(task) else { return Ok(()) };
             match choice {
                 6 => task.pc = near(u, task.pc)?,
+                7 => task.until_ns = extreme(u)?,
                 _ => task.is_done = !task.is_done,
             }
         }

@@ -15,7 +15,8 @@ use obverse_syntax::parse;
 /// Those of the randomness.
 pub fn formats(u: &mut Unstructured<'_>) -> Result<bool> {
     let noise = noise(u.arbitrary()?);
-    let source = programs::generate(u, Options::default())?;
+    // Each is compiled and written out several times.
+    let source = programs::generate(u, Options { max_statements: 30, ..Options::default() })?;
     let untidy = untidy(&mut Unstructured::new(&noise), &source)?;
     let expected = meaning(&source);
     assert!(meaning(&untidy) == expected, "the untidy text means something else\n{untidy}");

@@ -86,16 +86,8 @@ fn restricted(source: &str, other: &str, sequence: &str) -> String {
 
 fn name_of<'s>(item: &Item<'s>) -> Option<&'s str> {
     match item {
-        Item::Cell(_) | Item::Import(_) | Item::Allow(_) => None,
-        Item::Signal(entry) => Some(entry.name.value),
         Item::Cleanup(_) => Some("cleanup"),
-        Item::Io(io) => Some(io.name.value),
-        Item::Joints(joints) => Some(joints.name.value),
-        Item::ItemDeclaration(item) => Some(item.name.value),
-        Item::Error(error) => Some(error.name.value),
-        Item::AdvancedMove(advanced) => Some(advanced.name.value),
-        Item::Variable(variable) => Some(variable.name.value),
-        Item::Sequence(sequence) => Some(sequence.name.value),
+        item => item.name().map(|name| name.value),
     }
 }
 

@@ -23,6 +23,7 @@ pub mod programs;
 pub mod reach_laws;
 pub mod recovery_laws;
 pub mod reference;
+pub mod wait_laws;
 pub mod word_laws;
 
 pub use ledger::Ledger;

@@ -19,6 +19,9 @@ const MAX_STEPS: usize = 3_000;
 /// How often a law turns round within what replaces a block.
 const MAX_TURNS: u32 = 5;
 
+/// What the end of a turn leaves on the tape.
+const SWITCH_BITS: u64 = 192;
+
 fn program(u: &mut Unstructured<'_>, options: Options) -> Result<Verified> {
     let module = code::module(u, options)?;
     match verify(module) {
@@ -114,11 +117,11 @@ pub fn parsimony(u: &mut Unstructured<'_>) -> Result<bool> {
     let module = program.module();
     let mut cell = Ledger::new(u.arbitrary()?);
     let mut machine = machine(&program, &cell);
+    let mut forks = Vec::new();
     for _ in 0..MAX_STEPS {
         let before = picture(&machine, &cell).1;
         let pc = machine.state().pc() as usize;
         let (instr, commands) = (module.code[pc], machine.commands());
-        let (turn, held) = (machine.state().branches(), machine.snapshot(&cell).forks);
         if !step(&mut machine, Direction::Forward, &mut cell) {
             break;
         }
@@ -130,8 +133,10 @@ pub fn parsimony(u: &mut Unstructured<'_>) -> Result<bool> {
             expected += 1;
         }
         // An act may end a turn, which leaves a switch.
-        let ended_turn = instr.info().family != Family::Task && machine.state().branches() != turn;
-        expected += 64 * u64::from(ended_turn) + held_bits(module, held.last(), &instr);
+        let held = std::mem::replace(&mut forks, machine.snapshot(&cell).forks);
+        let began_turn = forks.last().is_some_and(|fork| fork.turn_steps == 0);
+        let ended_turn = instr.info().family != Family::Task && began_turn;
+        expected += SWITCH_BITS * u64::from(ended_turn) + held_bits(module, held.last(), &instr);
         let recorded = after.size_bits() - before.size_bits();
         assert_eq!(recorded, expected, "{} at {pc}", instr.info().mnemonic);
         let commanded = machine.commands() > commands;
@@ -145,7 +150,7 @@ fn held_bits(module: &Module, fork: Option<&ForkSnapshot>, instr: &Instr) -> u64
     let (Some(fork), Instr::ForkLeave { .. }) = (fork, instr) else { return 0 };
     let frames = fork.tasks.iter().flat_map(|task| &task.frames);
     let of_frame = |frame: &FrameSnapshot| 64 + frame_bits(module, usize::from(frame.function));
-    64 * (fork.tasks.len() as u64 + 1) + frames.map(of_frame).sum::<u64>()
+    SWITCH_BITS + 128 * fork.tasks.len() as u64 + frames.map(of_frame).sum::<u64>()
 }
 
 fn frame_bits(module: &Module, function: usize) -> u64 {
@@ -168,7 +173,7 @@ fn expected_bits(module: &Module, state: &obverse_vm::State, instr: &Instr) -> u
             };
             frame_bits(module, function.index())
         }
-        Class::AfterForward(RecordKind::Switch) => 64,
+        Class::AfterForward(RecordKind::Switch) => SWITCH_BITS,
         Class::AfterForward(RecordKind::Tasks) => 0,
     }
 }

@@ -61,12 +61,17 @@ pub fn reach_of_forks(u: &mut Unstructured<'_>) -> Result<bool> {
     let reach = Reach::of(program.module());
     consistent(&reach, program.module().code.len());
     let mut is_stopped_in_branch = false;
+    let mut known = BTreeSet::new();
     for run in 0..FORK_RUNS {
         let mut cell = Ledger::new(run);
         let mut machine = machine(&program, &cell);
         for at in 0..FORK_STEPS {
             if at % FORK_RUNS == run {
-                let met = agree(&reach, &machine, &cell);
+                let met = met_from(&machine, &cell);
+                // Runs come by the same points again and again.
+                if let Some((pc, horizon)) = met.filter(|met| known.insert(*met)) {
+                    was_said(&reach, pc, horizon);
+                }
                 let is_stopped = met.is_some_and(|(_, horizon)| horizon != Horizon::Start);
                 is_stopped_in_branch |= is_stopped && !machine.state().branches().is_empty();
             }
@@ -160,14 +165,28 @@ fn meet(program: &Verified, reach: &Reach<'_>, u: &mut Unstructured<'_>) -> Resu
     Ok(met)
 }
 
+/// Where going back from here ends is what was said of this point.
 fn agree(reach: &Reach<'_>, machine: &Machine<'_>, cell: &Ledger) -> Option<Met> {
-    let pc = machine.state().pc();
-    let (mut trial, mut cell) = (machine.clone(), cell.clone());
-    let horizon = back(&mut trial, &mut cell)?;
-    let said = reach.every(pc);
+    let (pc, horizon) = met_from(machine, cell)?;
+    was_said(reach, pc, horizon);
+    Some((pc, horizon))
+}
+
+/// This point, and where going back from it ends; machine and workcell stay as they are.
+fn met_from(machine: &Machine<'_>, cell: &Ledger) -> Option<Met> {
+    let horizon = back(&mut machine.clone(), &mut cell.clone())?;
+    Some((machine.state().pc(), horizon))
+}
+
+/// What is kept of a point says so, or, where that is not all, a search from there.
+fn was_said(reach: &Reach<'_>, pc: u32, horizon: Horizon) {
+    let kept = reach.at(pc);
+    let said = match kept.is_more {
+        true => reach.every(pc).into_iter().collect(),
+        false => kept.horizons,
+    };
     assert!(said.contains(&horizon), "from {pc} it met {horizon:?}, and {said:?} was said");
     assert!(reach.way(pc, horizon).is_some(), "there is a way from {pc} to {horizon:?}");
-    Some((pc, horizon))
 }
 
 /// The sets that are found for all points at once are those of a search from each of them.

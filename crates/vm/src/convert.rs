@@ -1,4 +1,5 @@
-//! Operands of motions in the words of the workcell. Knows nothing of machines.
+//! Operands of motions in the words of the workcell, and its times as whole numbers. Knows nothing
+//! of machines.
 
 use obverse_geometry as geometry;
 use obverse_isa as isa;
@@ -34,4 +35,16 @@ pub fn axis(axis: isa::Axis) -> geometry::Axis {
         isa::Axis::PlusZ => geometry::Axis::PlusZ,
         isa::Axis::MinusZ => geometry::Axis::MinusZ,
     }
+}
+
+/// A time in seconds as the nearest number of nanoseconds; none for what is no time.
+#[must_use]
+pub fn nanoseconds(duration_s: f64) -> u64 {
+    (duration_s * 1e9).round() as u64
+}
+
+/// So many nanoseconds in seconds.
+#[must_use]
+pub fn seconds(duration_ns: u64) -> f64 {
+    duration_ns as f64 / 1e9
 }

@@ -15,6 +15,7 @@
 //! when going back is wise.
 
 pub mod alter;
+pub mod branches;
 pub mod class;
 pub mod convert;
 mod fault;
@@ -35,6 +36,7 @@ pub mod values;
 mod written;
 
 pub use alter::{Alteration, Aside};
+pub use branches::{Branches, branches, is_turn_of_motion};
 pub use link::{LinkError, Links};
 pub use machine::{Limits, Machine, Mark};
 pub use observe::{Event, Observer};
@@ -42,4 +44,4 @@ pub use pure::Calculator;
 pub use snapshot::SnapshotError;
 pub use state::{Direction, Frame, Pending, State};
 pub use stop::{Refusal, Stop, Trap, TrapKind};
-pub use task::{Branches, MAX_FORKS, branches};
+pub use task::MAX_FORKS;

@@ -1,6 +1,7 @@
 //! The machine: a verified program, its state, and its tape, run in either direction.
 
 use crate::alter::Alteration;
+use crate::branches::{self, Branches};
 use crate::hot::{self, Exit, MAX_STEP_WORDS};
 use crate::link::{LinkError, Links};
 use crate::observe::Observer;
@@ -8,7 +9,7 @@ use crate::reversed::{Reversed, reversed};
 use crate::state::{Direction, Frame, State};
 use crate::step::{Host, Outcome};
 use crate::stop::Stop;
-use crate::task::{self, Branches};
+
 use obverse_bytecode::Verified;
 use obverse_isa::Class;
 use obverse_tape::{NoTape, Tape};
@@ -120,7 +121,7 @@ impl<'p> Machine<'p> {
             program,
             constants: module.constants.iter().map(|constant| constant.bits()).collect(),
             reversed: reversed(&module.code),
-            branches: task::branches(&module.code),
+            branches: branches::branches(module),
             links,
             state,
             tape: Some(Tape::default()),

@@ -26,8 +26,8 @@ pub struct Event {
     pub branches: Vec<usize>,
 }
 
-/// Who is told what a machine does. Told of acts, calls, returns, errors, forks that are left,
-/// and the reversal words.
+/// Who is told what a machine does. Told of acts, calls, returns, errors, forks that are left, ends
+/// of branches where all others wait, and the reversal words.
 pub trait Observer {
     /// It was done.
     fn on_event(&mut self, event: &Event, cell: &dyn Workcell);

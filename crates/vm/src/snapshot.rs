@@ -74,6 +74,7 @@ impl<'p> Machine<'p> {
         let task = |task: &Task| TaskSnapshot {
             pc: task.pc,
             is_done: task.is_done,
+            until_ns: task.until_ns,
             frames: task.frames.iter().map(frame).collect(),
         };
         let fork = |fork: &Fork| ForkSnapshot {
@@ -81,6 +82,7 @@ impl<'p> Machine<'p> {
             base: fork.base as u32,
             current: fork.current as u8,
             turn_steps: state.steps().wrapping_sub(fork.turn_began),
+            now_ns: fork.now_ns,
             tasks: fork.tasks.iter().map(task).collect(),
         };
         let pending =
@@ -188,6 +190,7 @@ fn restore_fork(machine: &Machine<'_>, snapshot: &Snapshot, fork: &ForkSnapshot)
         base,
         current,
         turn_began: snapshot.steps - fork.turn_steps,
+        now_ns: fork.now_ns,
         open_blocks: open_blocks(module, around, fork.at),
         compensations: 0,
         tasks: tasks?,
@@ -212,6 +215,7 @@ fn restore_task(
     fits.then(|| Task {
         pc: task.pc,
         is_done: task.is_done,
+        until_ns: task.until_ns,
         frames: task.frames.iter().map(|frame| restore_frame(module, frame)).collect(),
     })
 }

@@ -8,7 +8,7 @@ use crate::class::{AfterForward, Always, Failure, Never};
 use crate::hot::{self, Exit};
 use crate::machine::{Machine, values};
 use crate::observe::{Event, Observer};
-use crate::ops::acts::Acts;
+use crate::ops::acts::{Acts, Done};
 use crate::state::{Compensation, Direction, Frame, MAX_FRAMES, Pending, State};
 use crate::stop::{Refusal, Stop, Trap, TrapKind};
 use obverse_isa::{Class, FunctionId, Instr, ReasonId, for_each_op, op};
@@ -44,7 +44,8 @@ macro_rules! acts {
             level_before: state.pending.and_then(|pending| pending.level_before),
             pc: state.place.pc as u32,
             alteration: $machine.alteration.as_ref(),
-            report: None,
+            may_rest: false,
+            done: Done::default(),
         }
     }};
 }
@@ -110,10 +111,10 @@ impl Machine<'_> {
                 self.advance()
             }
             Instr::Fork { .. } | Instr::ForkNext {} | Instr::ForkJoin { .. } => {
-                self.task_forward(at)
+                self.task_forward(at, host)
             }
             Instr::ForkLeave { .. } => {
-                self.task_forward(at)?;
+                self.task_forward(at, host)?;
                 self.tell(Direction::Forward, at, None, host);
                 Ok(())
             }
@@ -124,14 +125,19 @@ impl Machine<'_> {
     /// Do the act at `effect`, whose operands are there, and go on at `next`.
     fn finish_forward(&mut self, effect: usize, host: &mut Host<'_>, next: usize) -> Outcome {
         let instr = self.program.module().code[effect];
-        let report = self
-            .act_forward(instr, host)
-            .map_err(|failure| self.failed(failure, effect, Direction::Forward))?;
+        let acted = self.act_forward(instr, host).and_then(|done| {
+            // What all tasks wait for is waited for in this act.
+            Ok((done.report, self.end_of_turn(effect, &done, host)?))
+        });
+        let (report, turn) =
+            acted.map_err(|failure| self.failed(failure, effect, Direction::Forward))?;
         self.state.pending = None;
         self.state.depth = 0;
         self.state.place.pc = next;
         self.tell(Direction::Forward, effect, report, host);
-        self.end_turn(instr);
+        if let Some(turn) = turn {
+            self.pass_turn(turn);
+        }
         match instr {
             Instr::ErrorRaise { error } => Err(Stop::Raised { error, pc: effect as u32 }),
             Instr::ErrorDue { error } => Err(Stop::Due { error, pc: effect as u32 }),
@@ -192,21 +198,17 @@ impl Machine<'_> {
     /// Undo the act at `effect`, whose operands are there, and stand before its statement.
     fn finish_reverse(&mut self, effect: usize, host: &mut Host<'_>) -> Outcome {
         let instr = self.program.module().code[effect];
-        let report = self
+        let done = self
             .act_reverse(instr, host)
             .map_err(|failure| self.failed(failure, effect, Direction::Reverse))?;
         self.state.pending = None;
         self.state.depth = 0;
         self.state.place.pc = effect - usize::from(instr.prefix());
-        self.tell(Direction::Reverse, effect, report, host);
+        self.tell(Direction::Reverse, effect, done.report, host);
         Ok(())
     }
 
-    fn act_forward(
-        &mut self,
-        instr: Instr,
-        host: &mut Host<'_>,
-    ) -> Result<Option<MotionReport>, Failure> {
+    fn act_forward(&mut self, instr: Instr, host: &mut Host<'_>) -> Result<Done, Failure> {
         macro_rules! dispatch {
             ($(
                 $(#[doc = $doc:literal])+
@@ -224,11 +226,7 @@ impl Machine<'_> {
         for_each_op!(dispatch)
     }
 
-    fn act_reverse(
-        &mut self,
-        instr: Instr,
-        host: &mut Host<'_>,
-    ) -> Result<Option<MotionReport>, Failure> {
+    fn act_reverse(&mut self, instr: Instr, host: &mut Host<'_>) -> Result<Done, Failure> {
         macro_rules! dispatch {
             ($(
                 $(#[doc = $doc:literal])+
@@ -246,29 +244,22 @@ impl Machine<'_> {
         for_each_op!(dispatch)
     }
 
-    fn always_forward<O>(
-        &mut self,
-        op: O,
-        host: &mut Host<'_>,
-    ) -> Result<Option<MotionReport>, Failure>
+    fn always_forward<O>(&mut self, op: O, host: &mut Host<'_>) -> Result<Done, Failure>
     where
         O: for<'a> Always<Acts<'a>> + Into<Instr> + Copy,
     {
         self.count_command(op);
-        let mut acts = acts!(self, host);
-        let done = op.forward(&mut acts);
-        let (report, level_before) = (acts.report, acts.level_before);
+        let may_rest = self.others_go_on();
+        let mut acts = Acts { may_rest, ..acts!(self, host) };
+        let acted = op.forward(&mut acts);
+        let (done, level_before) = (acts.done, acts.level_before);
         self.remember_level(Direction::Forward, level_before);
-        done.map(|()| report)
+        acted.map(|()| done)
     }
 
     /// Nothing before this can be reversed: what is on the tape is dropped, unless a block with a
     /// reverse of its own is open, which passes over this too.
-    fn never_forward<O>(
-        &mut self,
-        op: O,
-        host: &mut Host<'_>,
-    ) -> Result<Option<MotionReport>, Failure>
+    fn never_forward<O>(&mut self, op: O, host: &mut Host<'_>) -> Result<Done, Failure>
     where
         O: for<'a> Never<Acts<'a>>,
     {
@@ -277,39 +268,32 @@ impl Machine<'_> {
         if let (Some(tape), true) = (&mut self.tape, may_drop) {
             tape.barrier();
         }
-        Ok(None)
+        Ok(Done::default())
     }
 
-    fn always_reverse<O>(
-        &mut self,
-        op: O,
-        host: &mut Host<'_>,
-    ) -> Result<Option<MotionReport>, Failure>
+    fn always_reverse<O>(&mut self, op: O, host: &mut Host<'_>) -> Result<Done, Failure>
     where
         O: for<'a> Always<Acts<'a>> + Into<Instr> + Copy,
     {
         if !self.count_command(op) {
-            return Ok(None);
+            return Ok(Done::default());
         }
         let mut acts = acts!(self, host);
-        let done = op.reverse(&mut acts);
-        let (report, level_before) = (acts.report, acts.level_before);
+        let acted = op.reverse(&mut acts);
+        let (done, level_before) = (acts.done, acts.level_before);
         self.remember_level(Direction::Reverse, level_before);
-        done.map(|()| report)
+        acted.map(|()| done)
     }
 
-    fn recorded_forward<O, R>(
-        &mut self,
-        op: O,
-        host: &mut Host<'_>,
-    ) -> Result<Option<MotionReport>, Failure>
+    fn recorded_forward<O, R>(&mut self, op: O, host: &mut Host<'_>) -> Result<Done, Failure>
     where
         O: for<'a> AfterForward<Acts<'a>, Saved = R> + Into<Instr> + Copy,
         R: Record,
     {
         self.count_command(op);
         let is_again = self.state.pending.is_some();
-        let mut acts = acts!(self, host);
+        let may_rest = self.others_go_on();
+        let mut acts = Acts { may_rest, ..acts!(self, host) };
         let saved = match &self.tape {
             Some(tape) if is_again => R::peek(tape).ok_or(TrapKind::TapeEmpty)?,
             None if is_again => return Err(TrapKind::NoTape.into()),
@@ -321,37 +305,33 @@ impl Machine<'_> {
                 None => saved.push(&mut NoTape),
             }
         }
-        let done = op.forward(&mut acts, &saved);
-        let report = acts.report;
-        if let (Err(Failure::Trap(_)), false, Some(tape)) = (&done, is_again, &mut self.tape) {
+        let acted = op.forward(&mut acts, &saved);
+        let done = acts.done;
+        if let (Err(Failure::Trap(_)), false, Some(tape)) = (&acted, is_again, &mut self.tape) {
             // The statement has not begun, so nothing of it is recorded.
             R::pop(tape);
         }
-        done.map(|()| report)
+        acted.map(|()| done)
     }
 
-    fn recorded_reverse<O, R>(
-        &mut self,
-        op: O,
-        host: &mut Host<'_>,
-    ) -> Result<Option<MotionReport>, Failure>
+    fn recorded_reverse<O, R>(&mut self, op: O, host: &mut Host<'_>) -> Result<Done, Failure>
     where
         O: for<'a> AfterForward<Acts<'a>, Saved = R> + Into<Instr> + Copy,
         R: Record,
     {
         if !self.count_command(op) {
             let tape = self.tape.as_mut().ok_or(TrapKind::NoTape)?;
-            return R::pop(tape).map(|_| None).ok_or(TrapKind::TapeEmpty.into());
+            return R::pop(tape).map(|_| Done::default()).ok_or(TrapKind::TapeEmpty.into());
         }
         let tape = self.tape.as_ref().ok_or(TrapKind::NoTape)?;
         let saved = R::peek(tape).ok_or(TrapKind::TapeEmpty)?;
         let mut acts = acts!(self, host);
         op.reverse(&mut acts, &saved)?;
-        let report = acts.report;
+        let done = acts.done;
         if let Some(tape) = &mut self.tape {
             R::pop(tape);
         }
-        Ok(report)
+        Ok(done)
     }
 
     /// Count what commands the workcell; whether it is done at all, or passed over.
@@ -571,7 +551,7 @@ impl Machine<'_> {
         Ok(())
     }
 
-    fn tell(
+    pub(crate) fn tell(
         &self,
         direction: Direction,
         at: usize,

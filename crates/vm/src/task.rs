@@ -2,23 +2,33 @@
 //!
 //! A task is a place in the code and the calls under way there; the frame of the function that
 //! forks is everybody's. A turn ends when something was commanded of the workcell and what came of
-//! it has been read, or its branch has ended; then the next branch goes on that has not. The tape
-//! keeps one switch a turn: whose it was, and how many steps it took. So the turns are taken back
-//! in their order, whatever rule they were taken by. While an error is pending, and in a block with
-//! a reverse of its own, the turn does not end: the other tasks are held where they are, between
-//! statements.
+//! it has been read, or its branch has ended; then the next branch goes on that has not and that is
+//! ready. The tape keeps one switch a turn: whose it was, and how many steps it took. So the turns
+//! are taken back in their order, whatever rule they were taken by. While an error is pending, and
+//! in a block with a reverse of its own, the turn does not end: the other tasks are held where they
+//! are, between statements.
+//!
+//! A task that waits, or whose output settles, is ready again at a time of its fork. That time is
+//! the sum of what the acts took, as the workcell reported it, so never more than has really passed
+//! since, and it goes back with the turns. The workcell is commanded to wait only where no task is
+//! ready: in the act that ended the turn, or before a branch ends or a fork is left, which then has
+//! not begun if there is a fault.
 //!
 //! Knows nothing of what the statements of a turn do.
 
+use crate::branches::{Branches, is_turn_of_motion};
+use crate::class::Failure;
+use crate::convert;
 use crate::machine::Machine;
-use crate::state::{Frame, MAX_FRAMES};
-use crate::step::Outcome;
+use crate::ops::acts::Done;
+use crate::state::{Direction, Frame, MAX_FRAMES};
+use crate::step::{Host, Outcome};
 use crate::stop::{Stop, Trap, TrapKind};
 use obverse_bytecode::{Function, Module};
 use obverse_isa::Instr;
 use obverse_tape::Tape;
 use obverse_tape::record::{self, HeldTask, Switch};
-use std::collections::BTreeMap;
+use obverse_workcell::{Fault, Workcell};
 
 /// The most forks that may be open in one another.
 pub const MAX_FORKS: usize = 64;
@@ -34,6 +44,8 @@ pub(crate) struct Fork {
     pub(crate) current: usize,
     /// How many steps the program had made when the turn began.
     pub(crate) turn_began: u64,
+    /// How much time has passed in it, in nanoseconds.
+    pub(crate) now_ns: u64,
     /// How many blocks with a reverse of their own are around it.
     pub(crate) open_blocks: u32,
     /// How many functions that run in place of a reversal are around it.
@@ -49,54 +61,54 @@ pub(crate) struct Task {
     pub(crate) pc: u32,
     /// Whether it has come to its end.
     pub(crate) is_done: bool,
+    /// Until when it waits, in nanoseconds of the fork's time.
+    pub(crate) until_ns: u64,
     /// Its calls, outermost first.
     pub(crate) frames: Vec<Frame>,
 }
 
-/// The branches of a fork: the first instruction of each, and its last.
-#[derive(Clone, Debug)]
-pub struct Branches {
-    /// Where the branches come together.
-    pub join: u32,
-    /// One a branch: its first instruction, and that at which it ends.
-    pub ends: Vec<(u32, u32)>,
-}
-
-/// The forks of a program by their first instruction.
-#[must_use]
-pub fn branches(code: &[Instr]) -> BTreeMap<u32, Branches> {
-    let mut forks = BTreeMap::new();
-    // Of each fork that is open: where it is, the branches so far, where the next begins.
-    let mut open: Vec<(u32, Branches, u32)> = Vec::new();
-    for (at, instr) in (0..).zip(code) {
-        match instr {
-            Instr::Fork { join } => {
-                open.push((at, Branches { join: join.0, ends: Vec::new() }, at + 1));
-            }
-            Instr::ForkNext {} => {
-                if let Some((_, branches, start)) = open.last_mut() {
-                    branches.ends.push((*start, at));
-                    *start = at + 1;
-                }
-            }
-            Instr::ForkJoin { .. } => {
-                if let Some((fork, mut branches, start)) = open.pop() {
-                    branches.ends.push((start, at));
-                    forks.insert(fork, branches);
-                }
-            }
-            _ => {}
-        }
-    }
-    forks
+/// How a turn ends that another one follows.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct TurnEnd {
+    /// Whose turn is next.
+    next: usize,
+    /// When it begins, in nanoseconds of the fork's time.
+    now_ns: u64,
+    /// Until when the task waits whose turn ends.
+    until_ns: u64,
 }
 
 impl Fork {
-    /// The next task that has not come to its end, other than the one whose turn it is.
-    fn next(&self) -> Option<usize> {
+    /// The tasks that have not come to their end, other than the one whose turn it is, from the
+    /// one after it on.
+    fn others(&self) -> impl Iterator<Item = usize> {
         let count = self.tasks.len();
-        let others = (1..count).map(|step| (self.current + step) % count);
-        others.into_iter().find(|&task| !self.tasks[task].is_done)
+        let others = (1..count).map(move |step| (self.current + step) % count);
+        others.filter(|&task| !self.tasks[task].is_done)
+    }
+
+    /// How the turn ends at a time, if any task goes on: when the first of them is ready, and which
+    /// of those that are ready then. The task whose turn it is waits until a time too, at a place,
+    /// unless it has come to its end.
+    fn turn_end(
+        &self,
+        branches: &Branches,
+        now_ns: u64,
+        own: Option<(u64, u32)>,
+    ) -> Option<TurnEnd> {
+        let other = |task: usize| (task, self.tasks[task].until_ns, self.tasks[task].pc);
+        let own_task = own.map(|(until_ns, pc)| (self.current, until_ns, pc));
+        let all = || self.others().map(other).chain(own_task);
+        let now_ns = all().map(|(_, until_ns, _)| until_ns).min()?.max(now_ns);
+        let ready = all().filter(|(_, until_ns, _)| *until_ns <= now_ns);
+        let next = branches.first_of(ready.map(|(task, _, pc)| (task, pc)))?;
+        Some(TurnEnd { next, now_ns, until_ns: own.map_or(0, |(until_ns, _)| until_ns) })
+    }
+
+    /// How long the last of the tasks that have not come to their end still waits, in nanoseconds.
+    fn longest_rest_ns(&self) -> u64 {
+        let rest = |task: usize| self.tasks[task].until_ns.saturating_sub(self.now_ns);
+        self.others().map(rest).max().unwrap_or(0)
     }
 
     /// Every word of its state: where the tasks are that wait, and what they hold.
@@ -104,8 +116,10 @@ impl Fork {
         sink(u64::from(self.at) << 32 | self.base as u64);
         sink(self.current as u64);
         sink(steps.wrapping_sub(self.turn_began));
+        sink(self.now_ns);
         for task in &self.tasks {
             sink(u64::from(task.is_done) << 32 | u64::from(task.pc));
+            sink(task.until_ns);
             task.frames.iter().for_each(|frame| frame.each_word(functions, sink));
         }
     }
@@ -118,11 +132,11 @@ impl Machine<'_> {
     }
 
     /// One step forward of the family of forks.
-    pub(crate) fn task_forward(&mut self, at: usize) -> Outcome {
+    pub(crate) fn task_forward(&mut self, at: usize, host: &mut Host<'_>) -> Outcome {
         match self.program.module().code[at] {
             Instr::Fork { .. } => self.fork(at),
-            Instr::ForkLeave { .. } => self.leave_fork(at),
-            _ => self.end_branch(),
+            Instr::ForkLeave { .. } => self.leave_fork(at, host),
+            _ => self.end_branch(at, host),
         }
     }
 
@@ -139,10 +153,11 @@ impl Machine<'_> {
         }
         let started = |&(start, _): &(u32, u32)| Task { pc: start, ..Task::default() };
         let mut tasks: Vec<Task> = branches.ends.iter().map(started).collect();
-        tasks[0] = Task::default();
-        self.state.place.pc = at + 1;
-        let turn_began = self.state.steps();
-        self.open_fork(at as u32, 0, turn_began, tasks);
+        let first = branches.first();
+        let start = std::mem::take(&mut tasks[first]).pc;
+        let turn_began = self.state.steps() + 1;
+        self.state.place.stand_at(start as usize, turn_began);
+        self.open_fork(at as u32, first, turn_began, tasks);
         Ok(())
     }
 
@@ -152,52 +167,131 @@ impl Machine<'_> {
             base: self.state.frames.len(),
             current,
             turn_began,
+            now_ns: 0,
             open_blocks: self.state.open_blocks,
             compensations: self.state.compensations.len(),
             tasks,
         });
     }
 
+    /// The fork is over: its time is time of the one around it.
+    fn close_fork(&mut self) -> Option<Fork> {
+        let fork = self.state.forks.pop()?;
+        if let Some(around) = self.state.forks.last_mut() {
+            around.now_ns = around.now_ns.wrapping_add(fork.now_ns);
+        }
+        Some(fork)
+    }
+
+    /// The fork is open again at a time of its own.
+    fn reopen_fork(
+        &mut self,
+        at: u32,
+        (current, turn_began): (usize, u64),
+        now_ns: u64,
+        tasks: Vec<Task>,
+    ) {
+        if let Some(around) = self.state.forks.last_mut() {
+            around.now_ns = around.now_ns.wrapping_sub(now_ns);
+        }
+        self.open_fork(at, current, turn_began, tasks);
+        if let Some(fork) = self.state.forks.last_mut() {
+            fork.now_ns = now_ns;
+        }
+    }
+
+    /// Have the workcell wait before an instruction that is no act: it has not begun if there is a
+    /// fault.
+    fn wait_before(at: usize, rest_ns: u64, host: &mut Host<'_>) -> Outcome {
+        let (pc, direction) = (at as u32, Direction::Forward);
+        wait(rest_ns, host.cell).map_err(|fault| Stop::Fault { fault, pc, direction })
+    }
+
     /// The task at hand has come to the end of its branch.
-    fn end_branch(&mut self) -> Outcome {
+    fn end_branch(&mut self, at: usize, host: &mut Host<'_>) -> Outcome {
+        let Some(fork) = self.state.forks.last() else {
+            return Self::trap_at(at, TrapKind::Foreign);
+        };
+        let branches = self.branches.get(&fork.at);
+        let end = branches.and_then(|branches| fork.turn_end(branches, fork.now_ns, None));
+        if let Some(end) = end.filter(|end| end.now_ns > fork.now_ns) {
+            Self::wait_before(at, end.now_ns - fork.now_ns, host)?;
+            self.tell(Direction::Forward, at, None, host);
+        }
         self.state.place.pc += 1;
         if let Some(fork) = self.state.forks.last_mut() {
             fork.tasks[fork.current].is_done = true;
         }
-        self.pass_turn();
+        match end {
+            Some(end) => self.pass_turn(end),
+            None => self.join(),
+        }
         Ok(())
     }
 
-    /// After an instruction: the turn ends if it ends one, and nothing holds the other tasks.
-    pub(crate) fn end_turn(&mut self, instr: Instr) {
-        let Some(fork) = self.state.forks.last() else { return };
-        // What came of a motion is read before anybody else moves.
-        let is_read = self.program.module().code[self.state.place.pc].reads_motion();
+    /// Whether other tasks of a fork go on while the one whose turn it is waits.
+    pub(crate) fn others_go_on(&self) -> bool {
+        let Some(fork) = self.state.forks.last() else { return false };
         let is_held = !self.state.raised.is_empty()
             || self.state.open_blocks != fork.open_blocks
             || self.state.compensations.len() != fork.compensations;
-        if instr.ends_turn() && !is_read && !is_held && fork.next().is_some() {
-            self.pass_turn();
+        !is_held && fork.others().next().is_some()
+    }
+
+    /// After an act: how the turn ends, if it does. The workcell waits until a task is ready.
+    ///
+    /// # Errors
+    /// A fault of the workcell.
+    pub(crate) fn end_of_turn(
+        &mut self,
+        effect: usize,
+        done: &Done,
+        host: &mut Host<'_>,
+    ) -> Result<Option<TurnEnd>, Failure> {
+        let Some(fork) = self.state.forks.last() else { return Ok(None) };
+        let code = &self.program.module().code;
+        if !code[effect].ends_turn_before(&code[effect + 1]) || !self.others_go_on() {
+            return Ok(None);
+        }
+        let Some(branches) = self.branches.get(&fork.at) else { return Ok(None) };
+        let passed_ns = fork.now_ns.saturating_add(took_ns(code, effect, done, host.cell));
+        let until_ns = passed_ns.saturating_add(convert::nanoseconds(done.rest_s));
+        let end = fork.turn_end(branches, passed_ns, Some((until_ns, effect as u32 + 1)));
+        if let Some(end) = end {
+            wait(end.now_ns - passed_ns, host.cell)?;
+        }
+        Ok(end)
+    }
+
+    /// Record the turn that has ended, before the next one begins at a time.
+    fn record_turn(&mut self, until_ns: u64, leaves: bool) {
+        let steps = self.state.steps();
+        let Some(fork) = self.state.forks.last() else { return };
+        let steps = steps.wrapping_sub(fork.turn_began);
+        let (task, now_ns) = (fork.current as u8, fork.now_ns);
+        if let Some(tape) = &mut self.tape {
+            Switch { task, steps, leaves, now_ns, until_ns }.push(tape);
         }
     }
 
-    /// The turn has ended: record it, and let the next task go on, or all come together.
-    fn pass_turn(&mut self) {
+    /// The turn has ended: record it, and let the next task go on.
+    pub(crate) fn pass_turn(&mut self, end: TurnEnd) {
+        let waited = self.state.forks.last().map(|fork| fork.tasks[end.next].until_ns);
+        self.record_turn(waited.unwrap_or(0), false);
+        if let Some(fork) = self.state.forks.last_mut() {
+            fork.now_ns = end.now_ns;
+            fork.tasks[fork.current].until_ns = end.until_ns;
+        }
+        self.give_turn_to(end.next, self.state.steps());
+    }
+
+    /// The last turn has ended: record it, and go on behind the fork.
+    fn join(&mut self) {
+        self.record_turn(0, false);
         let steps = self.state.steps();
-        let Some(fork) = self.state.forks.last() else { return };
-        let turn = steps.wrapping_sub(fork.turn_began);
-        let switch = Switch { task: fork.current as u8, steps: turn, leaves: false };
-        if let Some(tape) = &mut self.tape {
-            switch.push(tape);
-        }
-        match fork.next() {
-            Some(next) => self.give_turn_to(next, steps),
-            None => {
-                let join = self.branches.get(&fork.at).map_or(0, |branches| branches.join);
-                self.state.forks.pop();
-                self.state.place.stand_at(join as usize + 1, steps);
-            }
-        }
+        let Some(fork) = self.close_fork() else { return };
+        let join = self.branches.get(&fork.at).map_or(0, |branches| branches.join);
+        self.state.place.stand_at(join as usize + 1, steps);
     }
 
     /// Let the task at hand wait, and another one stand where it waited.
@@ -212,16 +306,18 @@ impl Machine<'_> {
         let next_task = &mut fork.tasks[next];
         self.state.frames.append(&mut next_task.frames);
         let stands = std::mem::take(&mut next_task.pc);
+        next_task.until_ns = 0;
         fork.current = next;
         fork.turn_began = turn_began;
         self.state.place.stand_at(stands as usize, steps);
     }
 
-    /// Leave a fork from within a branch.
-    fn leave_fork(&mut self, at: usize) -> Outcome {
-        let Some(fork) = self.state.forks.pop() else {
+    /// Leave a fork from within a branch, when what the others command has settled.
+    fn leave_fork(&mut self, at: usize, host: &mut Host<'_>) -> Outcome {
+        let Some(fork) = self.state.forks.last() else {
             return Self::trap_at(at, TrapKind::Foreign);
         };
+        Self::wait_before(at, fork.longest_rest_ns(), host)?;
         let functions = &self.program.module().functions;
         if let Some(tape) = &mut self.tape {
             for frame in fork.tasks.iter().flat_map(|task| &task.frames) {
@@ -232,16 +328,15 @@ impl Machine<'_> {
             let held = |(index, task): (usize, &Task)| HeldTask {
                 pc: pc(index, task),
                 is_done: task.is_done,
+                until_ns: task.until_ns,
                 calls: task.frames.iter().map(|frame| (frame.function, frame.return_pc)).collect(),
             };
             record::Tasks(fork.tasks.iter().enumerate().map(held).collect()).push(tape);
         }
         let join = self.branches.get(&fork.at).map_or(at, |branches| branches.join as usize);
         self.state.place.jump_forward(join);
-        let steps = self.state.steps().wrapping_sub(fork.turn_began);
-        if let Some(tape) = &mut self.tape {
-            Switch { task: fork.current as u8, steps, leaves: true }.push(tape);
-        }
+        self.record_turn(0, true);
+        self.close_fork();
         Ok(())
     }
 
@@ -255,7 +350,7 @@ impl Machine<'_> {
             return Ok(false);
         }
         if self.is_at_start(fork) {
-            self.state.place.pc = fork.at as usize;
+            self.state.place.stand_at(fork.at as usize, steps.wrapping_sub(1));
             self.state.forks.pop();
             return Ok(true);
         }
@@ -264,9 +359,13 @@ impl Machine<'_> {
             return Self::trap_at(at, TrapKind::TapeEmpty);
         };
         let before = usize::from(switch.task);
-        let is_other = before < fork.tasks.len() && before != fork.current;
-        if !is_other || switch.steps > steps || switch.leaves {
+        let is_one = before < fork.tasks.len() && (1..=steps).contains(&switch.steps);
+        if !is_one || switch.leaves {
             return Self::trap_at(at, TrapKind::Foreign);
+        }
+        if let Some(fork) = self.state.forks.last_mut() {
+            fork.now_ns = switch.now_ns;
+            fork.tasks[fork.current].until_ns = switch.until_ns;
         }
         self.give_turn_to(before, steps - switch.steps);
         let Some(fork) = self.state.forks.last_mut() else { return Ok(false) };
@@ -302,13 +401,15 @@ impl Machine<'_> {
         let mut tasks: Vec<Task> = if switch.leaves {
             self.take_held(join, &branches)?
         } else {
-            let done = |&(_, end): &(u32, u32)| Task { pc: end + 1, is_done: true, frames: vec![] };
+            let done =
+                |&(_, end): &(u32, u32)| Task { pc: end + 1, is_done: true, ..Task::default() };
             branches.ends.iter().map(done).collect()
         };
         let was = std::mem::take(&mut tasks[current]);
         let at = if switch.leaves { was.pc } else { was.pc - 1 };
         self.state.frames.extend(was.frames);
-        self.open_fork(fork, current, steps - switch.steps, tasks);
+        let began = steps - switch.steps;
+        self.reopen_fork(fork, (current, began), switch.now_ns, tasks);
         self.state.place.jump_reverse(join, at as usize);
         self.state.place.pc = at as usize;
         Ok(())
@@ -327,7 +428,8 @@ impl Machine<'_> {
         let mut tasks = Vec::new();
         for (task, ends) in held.0.iter().zip(&branches.ends).rev() {
             let frames = take_frames(tape, functions, &task.calls).ok_or(foreign.clone())?;
-            let waits = Task { pc: task.pc, is_done: task.is_done, frames };
+            let (pc, is_done, until_ns) = (task.pc, task.is_done, task.until_ns);
+            let waits = Task { pc, is_done, until_ns, frames };
             let calls = task.calls.iter().copied();
             let home = self.state.frames.last().map_or(0, |frame| usize::from(frame.function));
             if !may_wait(self.program.module(), home, (task.pc, task.is_done), calls, *ends) {
@@ -338,6 +440,17 @@ impl Machine<'_> {
         tasks.reverse();
         Ok(tasks)
     }
+}
+
+/// How long the turn took that ends with an act, in nanoseconds: as the workcell reported, or as
+/// it was commanded to wait.
+fn took_ns(code: &[Instr], effect: usize, done: &Done, cell: &dyn Workcell) -> u64 {
+    let motion = is_turn_of_motion(code, effect).then(|| cell.last_motion());
+    convert::nanoseconds(motion.map_or(0.0, |report| report.duration_s) + done.waited_s)
+}
+
+fn wait(rest_ns: u64, cell: &mut dyn Workcell) -> Result<(), Fault> {
+    if rest_ns == 0 { Ok(()) } else { cell.wait(convert::seconds(rest_ns)) }
 }
 
 /// The calls of a task with what they held, the newest on the tape.

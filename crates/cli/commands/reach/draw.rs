@@ -206,18 +206,24 @@ fn folded(list: &str) -> Vec<String> {
     folded
 }
 
-/// The lines of each stretch: `12-15, 20`. A line that does nothing does not part them.
+/// The lines of each stretch: `12-15, 20`, those of each file after its name where there are
+/// several. A line that does nothing does not part them.
 fn lines(page: &Page) -> Vec<String> {
     let mut lines = vec![String::new(); page.stretches.len()];
-    let mut close = |(stretch, first, last): (usize, usize, usize)| {
-        let separator = if lines[stretch].is_empty() { "" } else { ", " };
+    let mut named: Vec<Option<u16>> = vec![None; page.stretches.len()];
+    let mut close = |(stretch, row, last): (usize, &Row, usize)| {
+        let (told, first) = (&mut lines[stretch], row.number);
+        let separator = if told.is_empty() { "" } else { ", " };
+        let is_named = named[stretch].replace(row.file) == Some(row.file);
+        let file = page.files.get(usize::from(row.file)).filter(|_| !is_named);
+        let file = file.map_or(String::new(), |file| format!("{file}:"));
         let _ = match first == last {
-            true => write!(lines[stretch], "{separator}{first}"),
-            false => write!(lines[stretch], "{separator}{first}-{last}"),
+            true => write!(told, "{separator}{file}{first}"),
+            false => write!(told, "{separator}{file}{first}-{last}"),
         };
     };
     // The stretches of the row before, with the first and the last of their lines.
-    let mut open: Vec<(usize, usize, usize)> = Vec::new();
+    let mut open: Vec<(usize, &Row, usize)> = Vec::new();
     for row in &page.rows {
         if row.is_after_gap {
             open.drain(..).for_each(&mut close);
@@ -230,9 +236,9 @@ fn lines(page: &Page) -> Vec<String> {
         open.extend(
             row.stretches()
                 .into_iter()
-                .map(|stretch| (stretch, first_of(stretch).unwrap_or(row.number), row.number)),
+                .map(|stretch| (stretch, first_of(stretch).unwrap_or(row), row.number)),
         );
-        let is_over = |one: &&(usize, usize, usize)| open.iter().all(|goes_on| goes_on.0 != one.0);
+        let is_over = |one: &&(usize, &Row, usize)| open.iter().all(|goes_on| goes_on.0 != one.0);
         before.iter().filter(is_over).copied().for_each(&mut close);
     }
     open.into_iter().for_each(close);

@@ -183,6 +183,9 @@ impl View<'_> {
             Horizon::Never(pc) => json!({
                 "at": "never",
                 "instruction": pc,
+                "file": self.words.place(pc).map(|(file, _)| {
+                    &self.words.module.sources[usize::from(file)].name
+                }),
                 "line": self.words.place(pc).map(|(_, line)| line),
                 "reason": self.reach.reason(pc),
             }),

@@ -15,6 +15,8 @@ pub(super) struct Page {
     pub(super) rows: Vec<Row>,
     /// By what going back from them ends at.
     pub(super) stretches: Vec<Stretch>,
+    /// The names of the source files, if there are several.
+    pub(super) files: Vec<String>,
 }
 
 /// A line.
@@ -90,7 +92,9 @@ impl Page {
         } else {
             instructions(module, reach, &mut stretches)
         };
-        let mut page = Self { rows, stretches: stretches.all };
+        let sources = module.sources.iter().filter(|_| module.sources.len() > 1);
+        let files = sources.map(|source| source.name.clone()).collect();
+        let mut page = Self { rows, stretches: stretches.all, files };
         page.sort();
         page
     }
@@ -230,7 +234,8 @@ impl<'m, 'w> Sheet<'m, 'w> {
             }
             let left = self.left.remove(&(file, number));
             let horizon = left.and_then(|(left, last)| line(stretches, &left, last));
-            let heading = None;
+            let is_other = rows.last().is_none_or(|last| last.file != file);
+            let heading = self.words.name_of_file(file).filter(|_| is_other).map(str::to_owned);
             rows.push(Row { file, number, text, is_after_gap, heading, statements, horizon });
         }
         rows

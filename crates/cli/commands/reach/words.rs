@@ -35,6 +35,13 @@ impl<'m> Words<'m> {
         !self.module.source_map.is_empty()
     }
 
+    /// The name of a source file, if there are several.
+    pub(super) fn name_of_file(&self, file: u16) -> Option<&'m str> {
+        let sources = &self.module.sources;
+        let source = sources.get(usize::from(file)).filter(|_| sources.len() > 1)?;
+        Some(&source.name)
+    }
+
     /// The source line of an instruction, from 1.
     pub(super) fn place(&self, pc: u32) -> Option<(u16, usize)> {
         let entry = self.module.source_at(pc)?;

@@ -58,10 +58,10 @@ pub(super) fn words(module: &Module, pc: u32, size: Place, top: &Newest) -> Stri
 
 /// Whose turn ended with the instruction.
 fn turn(words: u64, newest: u64) -> String {
-    let Switch { task, steps, leaves } = Switch::from_word(newest);
+    let Switch { task, steps, leaves, .. } = Switch::from_word(newest);
     let ended = format!("end of a turn of branch {} after {}", task + 1, counted(steps, "step"));
     if leaves {
-        format!("{ended}, the others held in {}", counted(words - 1, "word"))
+        format!("{ended}, the others held in {}", counted(words.saturating_sub(3), "word"))
     } else {
         ended
     }

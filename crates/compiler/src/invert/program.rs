@@ -388,7 +388,8 @@ impl<'s> Plan<'s> {
         let made: HashSet<&str> = parts
             .iter()
             .filter(|part| part.is_inverse)
-            .filter_map(|part| name_of(&part.item))
+            .filter_map(|part| part.item.name())
+            .map(|name| name.value)
             .collect();
         let mut found = Vec::new();
         for sequence in &self.order {
@@ -537,7 +538,7 @@ fn needed(mut parts: Vec<Part<'_>>) -> Vec<Item<'_>> {
     let mut by_name: HashMap<&str, usize> = HashMap::new();
     for (index, part) in parts.iter().enumerate() {
         // That of an inverse comes first: what has its name otherwise is not meant.
-        if let Some(name) = name_of(&part.item)
+        if let Some(Spanned { value: name, .. }) = part.item.name()
             && (part.is_inverse || !by_name.contains_key(name))
         {
             by_name.insert(name, index);
@@ -555,20 +556,6 @@ fn needed(mut parts: Vec<Part<'_>>) -> Vec<Item<'_>> {
         }
     }
     parts.into_iter().filter(|part| part.is_needed).map(|part| part.item).collect()
-}
-
-fn name_of<'s>(item: &Item<'s>) -> Option<&'s str> {
-    match item {
-        Item::Cell(_) | Item::Import(_) | Item::Cleanup(_) | Item::Allow(_) => None,
-        Item::Signal(entry) => Some(entry.name.value),
-        Item::Io(io) => Some(io.name.value),
-        Item::Joints(joints) => Some(joints.name.value),
-        Item::ItemDeclaration(item) => Some(item.name.value),
-        Item::Error(error) => Some(error.name.value),
-        Item::AdvancedMove(advanced) => Some(advanced.name.value),
-        Item::Variable(variable) => Some(variable.name.value),
-        Item::Sequence(sequence) => Some(sequence.name.value),
-    }
 }
 
 /// The words that a declaration is written with; the names that it needs are among them.

@@ -122,9 +122,9 @@ macro_rules! warnings {
 
     // W06xx: forks.
     ReadsOtherBranch "W0601" "a branch of a fork that reads what another assigns"
-        why "Which value it reads depends on whose turn it is when. The turns are the same in \
-             every run of the same program in the same workcell, but a statement more in either \
-             branch changes them. Read it after the fork, or have one branch do both."
+        why "Which value it reads depends on whose turn it is when. That follows from what the \
+             branches do and from how long it takes: a statement more in either of them, or a \
+             longer wait, changes it. Read it after the fork, or have one branch do both."
         wrong "sequence main { var n = 0 fork { n = 1 } and { if n > 0 { wait 1 s } } }"
         right "sequence main { var n = 0 fork { n = 1 } and { wait 1 s } if n > 0 { wait 1 s } }"
     }};

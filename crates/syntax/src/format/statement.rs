@@ -13,7 +13,8 @@ impl<'s> Writer<'s> {
     pub(super) fn block(&mut self, block: &Block<'s>) {
         let is_broken = match block.statements.as_slice() {
             [] => false,
-            [one] => has_block(&one.kind),
+            // What has a block in it is not short.
+            [one] => !one.blocks().is_empty(),
             _ => true,
         };
         self.body(block, is_broken);
@@ -375,40 +376,5 @@ fn chained<'b, 's>(block: &'b Block<'s>) -> Option<&'b StatementKind<'s>> {
             is_link.then_some(&one.kind)
         }
         _ => None,
-    }
-}
-
-/// Whether a statement has a block in it, and so is not short.
-fn has_block(kind: &StatementKind<'_>) -> bool {
-    match kind {
-        StatementKind::Speed { block, .. } | StatementKind::Tool { block, .. } => block.is_some(),
-        StatementKind::WaitUntil { otherwise, .. } => otherwise.is_some(),
-        StatementKind::If { .. }
-        | StatementKind::While { .. }
-        | StatementKind::Repeat { .. }
-        | StatementKind::For { .. }
-        | StatementKind::Loop(_)
-        | StatementKind::Irreversible { .. }
-        | StatementKind::SkipInReverse(_)
-        | StatementKind::ReplaceInReverse { .. }
-        | StatementKind::KeepInReverse(_)
-        | StatementKind::WithInReverse { .. }
-        | StatementKind::Fork(_) => true,
-        StatementKind::Move { .. }
-        | StatementKind::Advance(_)
-        | StatementKind::Call { .. }
-        | StatementKind::Io(_)
-        | StatementKind::Wait(_)
-        | StatementKind::Primitive(_)
-        | StatementKind::Variable(_)
-        | StatementKind::Remember(_)
-        | StatementKind::Assign { .. }
-        | StatementKind::Break
-        | StatementKind::Return
-        | StatementKind::Checkpoint(_)
-        | StatementKind::Barrier(_)
-        | StatementKind::Throw(_)
-        | StatementKind::Requires { .. }
-        | StatementKind::Allow(_) => false,
     }
 }

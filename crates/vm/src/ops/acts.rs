@@ -2,6 +2,7 @@
 //! It sees neither the tape nor the program counter.
 
 use crate::alter::Alteration;
+use crate::class::Failure;
 use crate::link::Links;
 use crate::stop::TrapKind;
 use crate::values::{Settings, Slots};
@@ -26,8 +27,21 @@ pub(crate) struct Acts<'a> {
     pub(crate) pc: u32,
     /// What is done otherwise than the program says.
     pub(crate) alteration: Option<&'a Alteration>,
-    /// What came of the motion that the effect made.
+    /// Whether others go on while the task of a fork waits.
+    pub(crate) may_rest: bool,
+    /// What came of it so far.
+    pub(crate) done: Done,
+}
+
+/// What came of an effect.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct Done {
+    /// The report of the motion that it made.
     pub(crate) report: Option<MotionReport>,
+    /// How long it had the workcell wait, in seconds.
+    pub(crate) waited_s: f64,
+    /// How long its task is still to wait while others go on, in seconds.
+    pub(crate) rest_s: f64,
 }
 
 impl Acts<'_> {
@@ -49,6 +63,28 @@ impl Acts<'_> {
         let duration_s = self.real(at);
         let is_one = duration_s >= 0.0 && duration_s.is_finite();
         if is_one { Ok(duration_s) } else { Err(TrapKind::NotADuration) }
+    }
+
+    /// Wait, or leave it to the task while others go on.
+    ///
+    /// # Errors
+    /// A fault of the workcell.
+    pub(crate) fn rest(&mut self, duration_s: f64) -> Result<(), Failure> {
+        if self.may_rest {
+            self.done.rest_s = duration_s;
+            return Ok(());
+        }
+        self.wait(duration_s)
+    }
+
+    /// Wait, whoever waits with it.
+    ///
+    /// # Errors
+    /// A fault of the workcell.
+    pub(crate) fn wait(&mut self, duration_s: f64) -> Result<(), Failure> {
+        self.cell.wait(duration_s)?;
+        self.done.waited_s += duration_s;
+        Ok(())
     }
 
     /// The module's joint configuration at a place of the stack picture.

@@ -9,8 +9,7 @@ use obverse_tape::record::Bit;
 impl Acts<'_> {
     fn set_and_settle(&mut self, bit: u16, level: bool, settle_s: f64) -> Result<(), Failure> {
         self.cell.set_output(bit, level)?;
-        self.cell.wait(settle_s)?;
-        Ok(())
+        self.rest(settle_s)
     }
 }
 
@@ -51,7 +50,7 @@ impl Always<Acts<'_>> for op::OutputToggle {
 impl Always<Acts<'_>> for op::Wait {
     fn forward(self, acts: &mut Acts<'_>) -> Result<(), Failure> {
         let duration_s = acts.duration_s(0)?;
-        Ok(acts.cell.wait(duration_s)?)
+        acts.rest(duration_s)
     }
 
     fn reverse(self, _: &mut Acts<'_>) -> Result<(), Failure> {

@@ -22,7 +22,7 @@ impl Acts<'_> {
             Some(alteration) => self.altered(alteration, motion)?,
             None => motion,
         };
-        self.report = Some(self.cell.execute(&motion)?);
+        self.done.report = Some(self.cell.execute(&motion)?);
         Ok(())
     }
 
@@ -57,7 +57,7 @@ impl Acts<'_> {
             force_limit_n,
         };
         let report = self.cell.execute(&motion)?;
-        self.report = Some(report);
+        self.done.report = Some(report);
         match (report.end, force_limit_n) {
             (MotionEnd::StoppedByForce, Some(limit_n)) => {
                 Err(Fault::ForceLimit { force_n: report.peak_force_n, limit_n }.into())

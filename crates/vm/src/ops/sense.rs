@@ -54,7 +54,7 @@ fn wait_for(acts: &mut Acts<'_>, op: op::WaitInput) -> Result<bool, Failure> {
             return Ok(true);
         }
         let left_s = longest_s - poll as f64 * POLL_S;
-        acts.cell.wait(left_s.clamp(0.0, POLL_S))?;
+        acts.wait(left_s.clamp(0.0, POLL_S))?;
     }
     Ok(acts.cell.input(op.bit.0)? == op.level.is_high())
 }
