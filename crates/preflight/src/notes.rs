@@ -93,8 +93,7 @@ impl Notes {
         let is_lacking = |tally: &Tally| {
             let mut not_known = tally.reasons.iter().filter(|one| one.grade() == Grade::NotKnown);
             not_known.clone().any(|reason| *reason == Reason::TooManyRounds)
-                && not_known
-                    .all(|one| matches!(one, Reason::TooManyRounds | Reason::AfterFailure))
+                && not_known.all(|one| matches!(one, Reason::TooManyRounds | Reason::AfterFailure))
         };
         self.tallies.values().any(is_lacking)
     }

@@ -332,14 +332,7 @@ impl Builder<'_> {
     }
 
     /// A flag is set: whatever it was before.
-    fn set(
-        &mut self,
-        pass: &Pass,
-        pc: u32,
-        before: ByFlags,
-        flag: Flag,
-        value: bool,
-    ) -> ByFlags {
+    fn set(&mut self, pass: &Pass, pc: u32, before: ByFlags, flag: Flag, value: bool) -> ByFlags {
         std::array::from_fn(|flags| match flag.is_set(flags) == value {
             true => self.merge(pass, pc, [before[flags], before[flags ^ flag.bit()]]),
             false => NOWHERE,

@@ -227,9 +227,11 @@ fn lines(page: &Page) -> Vec<String> {
         }
         let before = std::mem::take(&mut open);
         let first_of = |stretch: usize| before.iter().find(|one| one.0 == stretch).map(|one| one.1);
-        open.extend(row.stretches().into_iter().map(|stretch| {
-            (stretch, first_of(stretch).unwrap_or(row.number), row.number)
-        }));
+        open.extend(
+            row.stretches()
+                .into_iter()
+                .map(|stretch| (stretch, first_of(stretch).unwrap_or(row.number), row.number)),
+        );
         let is_over = |one: &&(usize, usize, usize)| open.iter().all(|goes_on| goes_on.0 != one.0);
         before.iter().filter(is_over).copied().for_each(&mut close);
     }
