@@ -118,6 +118,21 @@ fn reach_is_met() {
     assert!(met * 100 >= said * 75, "of {said} horizons that points may have, {met} were met");
 }
 
+/// The same of programs of the language.
+#[test]
+fn reach_of_programs_is_met() {
+    let (mut met, mut said) = (0, 0);
+    for seed in 0..200 {
+        let found = reach_laws::met_and_said_of_programs(&mut Unstructured::new(&bytes(seed)));
+        let Ok((some, all)) = found else { continue };
+        assert!(some.is_subset(&all), "LAW_SEED={seed}");
+        met += some.len();
+        said += all.len();
+    }
+    println!("{met} of {said}");
+    assert!(met * 100 >= said * 90, "of {said} horizons that points may have, {met} were met");
+}
+
 #[test]
 fn a_program_cut_off_anywhere_gives_messages() {
     holds_of("cut_off_anywhere", front_laws::cut_off_anywhere, 90);

@@ -6,6 +6,7 @@ mod fmt;
 mod imports;
 mod invert;
 mod moves;
+mod reach;
 mod support;
 mod trials;
 mod wrong_files;

@@ -3,6 +3,7 @@
 
 mod back;
 mod forks;
+mod since;
 mod support;
 
 use obverse_preflight::{Grade, Reason};

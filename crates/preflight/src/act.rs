@@ -296,7 +296,7 @@ impl Explorer<'_> {
             Course::InReverse => Direction::Reverse,
         };
         let since = state.since;
-        let verdict = because(&answer.verdict, since);
+        let verdict = because(&answer.verdict, since, direction);
         self.notes.add(pc, direction, &verdict, &calls, state.is_planned);
         state.since = match verdict.grade() {
             grade if grade.is_wrong() => Some(Reason::AfterFailure),

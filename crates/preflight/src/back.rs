@@ -60,7 +60,7 @@ impl Explorer<'_> {
             Deed::Begin | Deed::Never => return,
             Deed::Move { pc, back: command, calls, is_planned, since } => {
                 let answer = self.worlds.ask(back.from, &command);
-                let verdict = because(&answer.verdict, since);
+                let verdict = because(&answer.verdict, since, Direction::Reverse);
                 self.notes.add(pc, Direction::Reverse, &verdict, &calls, is_planned);
                 vec![answer.after]
             }

@@ -18,7 +18,8 @@ use obverse_workcell::Items;
 pub struct Report {
     /// Every move, in the order of the code.
     pub moves: Vec<MoveReport>,
-    /// Whether all ways were followed, round by round where it matters; if not, nothing may be concluded from moves that look fine.
+    /// Whether all ways were followed, round by round where it matters; if not, nothing may be
+    /// concluded from moves that look fine.
     pub is_complete: bool,
 }
 

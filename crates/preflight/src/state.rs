@@ -45,7 +45,7 @@ pub(crate) struct State {
     /// Whether every decision so far was known, so that this is the only way.
     pub(crate) is_certain: bool,
     /// Why this way is not followed as it would be run: only so many rounds of a loop are, and no
-    /// run comes past a move that fails. What is not known from then on is not known for this reason.
+    /// run comes past a move that fails. What is not known from then on is so for this reason.
     pub(crate) since: Option<Reason>,
     /// The blocks with a reverse of their own that are open.
     pub(crate) blocks: Vec<NodeId>,

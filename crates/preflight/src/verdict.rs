@@ -3,6 +3,7 @@
 use crate::reason::{Grade, Reason};
 use obverse_sim::Plan;
 use obverse_sim::plan::BodyKind;
+use obverse_vm::Direction;
 use obverse_workcell::{Fault, FaultKind, Motion, Path};
 use std::rc::Rc;
 
@@ -47,14 +48,21 @@ impl Verdict {
 }
 
 /// What was found out on a way that is not followed as it would be run, for this reason.
-pub(crate) fn because(found: &Rc<Verdict>, since: Option<Reason>) -> Rc<Verdict> {
+pub(crate) fn because(
+    found: &Rc<Verdict>,
+    since: Option<Reason>,
+    direction: Direction,
+) -> Rc<Verdict> {
+    let has_failed = since == Some(Reason::AfterFailure);
     let is_so_since = match found.reason {
-        Reason::StartNotKnown
-        | Reason::GoalNotKnown
-        | Reason::SettingNotKnown
-        | Reason::HeldNotKnown => true,
-        // It was looked at; but where a move has failed, the arm may stand where it cannot.
-        _ => found.grade() == Grade::NotKnown && since == Some(Reason::AfterFailure),
+        Reason::StartNotKnown | Reason::HeldNotKnown => true,
+        // A failure makes no value unknown, but where to go back to.
+        Reason::GoalNotKnown | Reason::SettingNotKnown => {
+            !has_failed || direction == Direction::Reverse
+        }
+        // Where a move has failed, the arm may stand where it cannot.
+        Reason::LongContact | Reason::StopNotKnown => has_failed,
+        _ => false,
     };
     since
         .filter(|_| is_so_since)

@@ -43,10 +43,7 @@ pub fn reach_of_modules(u: &mut Unstructured<'_>) -> Result<bool> {
 /// # Errors
 /// Those of the randomness.
 pub fn reach_of_programs(u: &mut Unstructured<'_>) -> Result<bool> {
-    let source = programs::generate(u, programs::Options::default())?;
-    let compiled = obverse_compiler::compile("program.obv", &source);
-    let Some(module) = compiled.module else { panic!("{:?}\n{source}", compiled.diagnostics) };
-    let program = verified(module);
+    let program = compiled(&programs::generate(u, programs::Options::default())?);
     let reach = Reach::of(program.module());
     Ok(meet(&program, &reach, u)?.is_some())
 }
@@ -83,17 +80,39 @@ pub fn reach_of_forks(u: &mut Unstructured<'_>) -> Result<bool> {
     Ok(is_stopped_in_branch)
 }
 
+/// What runs met, and what was said of the points that they met it at.
+pub type MetAndSaid = (BTreeSet<Met>, BTreeSet<Met>);
+
 /// All that some runs of a random module meet, and all that is said of the points they met it at.
 ///
 /// # Errors
 /// Those of the randomness.
-pub fn met_and_said(u: &mut Unstructured<'_>) -> Result<(BTreeSet<Met>, BTreeSet<Met>)> {
-    let program = verified(code::module(u, Options { never: true, blocks: true })?);
+pub fn met_and_said(u: &mut Unstructured<'_>) -> Result<MetAndSaid> {
+    let module = code::module(u, Options { never: true, blocks: true })?;
+    Ok(met_by_runs(&verified(module), 20))
+}
+
+/// The same of a random program of the language.
+///
+/// # Errors
+/// Those of the randomness.
+pub fn met_and_said_of_programs(u: &mut Unstructured<'_>) -> Result<MetAndSaid> {
+    let source = programs::generate(u, programs::Options::default())?;
+    Ok(met_and_said_of(&source, 20))
+}
+
+/// The same of this program, in so many runs.
+#[must_use]
+pub fn met_and_said_of(source: &str, runs: u64) -> MetAndSaid {
+    met_by_runs(&compiled(source), runs)
+}
+
+fn met_by_runs(program: &Verified, runs: u64) -> MetAndSaid {
     let reach = Reach::of(program.module());
     let (mut met, mut said) = (BTreeSet::new(), BTreeSet::new());
-    for seed in 0..20 {
+    for seed in 0..runs {
         let mut cell = Ledger::new(seed);
-        let mut machine = machine(&program, &cell);
+        let mut machine = machine(program, &cell);
         for _ in 0..300 {
             let pc = machine.state().pc();
             let (mut trial, mut trial_cell) = (machine.clone(), cell.clone());
@@ -106,7 +125,13 @@ pub fn met_and_said(u: &mut Unstructured<'_>) -> Result<(BTreeSet<Met>, BTreeSet
             }
         }
     }
-    Ok((met, said))
+    (met, said)
+}
+
+fn compiled(source: &str) -> Verified {
+    let compiled = obverse_compiler::compile("program.obv", source);
+    let Some(module) = compiled.module else { panic!("{:?}\n{source}", compiled.diagnostics) };
+    verified(module)
 }
 
 fn verified(module: obverse_bytecode::Module) -> Verified {

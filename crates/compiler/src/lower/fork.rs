@@ -3,9 +3,9 @@
 //! What leaves a branch sets `$leaving`, says where to in a local, goes to the end of the branch,
 //! leaves the fork there, and goes on behind its join, where nothing of the fork is under way any
 //! more. What the other branches were in the middle of is put right there: settings are what they
-//! were before the fork, and what cannot be taken back is not. A branch that nothing leaves has none
-//! of this. That the fork is left is said by the flag and not by the local, since that is what is
-//! followed where it is found out how far back a point can go.
+//! were before the fork, and what cannot be taken back is not. A branch that nothing leaves has
+//! none of this. That the fork is left is said by the flag and not by the local, since that is what
+//! is followed where it is found out how far back a point can go.
 
 use super::Lower;
 use super::frame::Scope;
