@@ -287,7 +287,12 @@ fn dealt_with(module: &Module, error: ErrorId) -> String {
 
 /// Whether it is a move that waits for contact.
 pub(crate) fn is_guarded(instr: Instr) -> bool {
-    matches!(instr, Instr::MoveGuarded { .. } | Instr::MoveGuardedOpposite { .. })
+    matches!(
+        instr,
+        Instr::MoveGuarded { .. }
+            | Instr::MoveGuardedOpposite { .. }
+            | Instr::MoveTurnGuarded { .. }
+    )
 }
 
 fn motion(event: &Event, report: &MotionReport) -> String {
