@@ -3,7 +3,6 @@
 //!
 //! Knows no words and no columns: those are in `commands/dry.rs`.
 
-use crate::story;
 use obverse_bytecode::Module;
 use obverse_isa::{Family, Instr};
 use obverse_vm::{Direction, Event, Observer};
@@ -174,7 +173,7 @@ impl Observer for Cycle<'_> {
                 if let Some(reading) = reading(instr, cell) {
                     self.read(event.pc, reading);
                 }
-                if let (true, Some(report)) = (story::is_guarded(instr), event.report) {
+                if let (true, Some(report)) = (instr.is_guarded(), event.report) {
                     use obverse_workcell::MotionEnd;
                     let is_stopped = report.end == MotionEnd::StoppedByForce;
                     self.guarded.0 += 1;

@@ -287,14 +287,9 @@ fn dealt_with(module: &Module, error: ErrorId) -> String {
     format!("dealt with; {then}")
 }
 
-/// Whether it is a move that waits for contact.
-pub(crate) fn is_guarded(instr: Instr) -> bool {
-    matches!(instr, Instr::MoveGuarded { .. } | Instr::MoveGuardedOpposite { .. })
-}
-
 fn motion(event: &Event, report: &MotionReport) -> String {
     let distance_mm = report.distance_m * 1e3;
-    if is_guarded(event.instr) {
+    if event.instr.is_guarded() {
         let end = match report.end {
             MotionEnd::Reached => "reached its end",
             MotionEnd::StoppedByForce => "stopped by force",

@@ -321,6 +321,17 @@ impl Instr {
         matches!(self, Self::SenseDistance { .. } | Self::SensePeakForce { .. })
     }
 
+    /// Whether it is a motion that a force may end, as a success.
+    #[must_use]
+    pub fn is_guarded(&self) -> bool {
+        matches!(
+            self,
+            Self::MoveGuarded { .. }
+                | Self::MoveGuardedOpposite { .. }
+                | Self::MoveTurnGuarded { .. }
+        )
+    }
+
     /// Whether control never passes from this instruction to the next.
     #[must_use]
     pub fn never_falls_through(&self) -> bool {

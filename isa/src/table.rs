@@ -229,6 +229,13 @@ macro_rules! for_each_op {
 /// Move as `move.guarded` does. In reverse, straight back to the recorded start with the same force
 /// limit: being stopped by more is a fault there, from which it may be tried again.
 0x88 MoveGuardedOpposite "move.guarded.opposite" (prefix: Prefix, axis: Axis, frame: Frame) [real real --] after_forward(Joints) kinematic;
+/// Turn the tool about an axis through its centre point by an angle in radians, by the right hand,
+/// moving so many metres along the axis meanwhile. Whole turns count. In reverse, turned back to
+/// the recorded start.
+0x89 MoveTurn "move.turn" (prefix: Prefix, axis: Axis, frame: Frame) [real real --] after_forward(Joints) kinematic;
+/// Turn as `move.turn` does until the force exceeds so many newtons; being stopped so is a success.
+/// In reverse, turned back to the recorded start.
+0x8a MoveTurnGuarded "move.turn.guarded" (prefix: Prefix, axis: Axis, frame: Frame) [real real real --] after_forward(Joints) kinematic;
 
 /// Remember where the arm is; the position remembered before is saved.
 0x90 Remember "remember" (slot: SlotId) [--] after_forward(Joints) sense;

@@ -321,6 +321,8 @@ pub(crate) enum Motion {
     Keyframe(Expression, KeyframeId, Path),
     /// By a distance in metres.
     Relative(Expression, Axis, Frame),
+    /// Turned by an angle in radians, and on by a distance in metres.
+    Turned(Expression, Expression, Axis, Frame),
     /// To a remembered position.
     Position(SlotId, Path),
 }
@@ -330,6 +332,8 @@ pub(crate) enum Motion {
 pub(crate) struct GuardedMove {
     /// What must hold before, and what follows if it does not.
     pub(crate) requires: Option<(Prepared, Unmet)>,
+    /// How far it is turned, in radians, if it is.
+    pub(crate) angle: Option<Prepared>,
     /// How far, in metres.
     pub(crate) distance: Prepared,
     /// Which way.

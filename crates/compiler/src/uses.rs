@@ -119,8 +119,9 @@ impl Uses {
     fn of_guarded(guarded: &GuardedMove) -> Self {
         let mut uses = Self::default();
         uses.add(Resource::Arm, How::Commands, guarded.spans.motion);
-        let GuardedMove { requires, distance, limit, succeeds, repeat, .. } = guarded;
+        let GuardedMove { requires, angle, distance, limit, succeeds, repeat, .. } = guarded;
         requires.iter().for_each(|(condition, _)| uses.prepared(condition));
+        angle.iter().for_each(|angle| uses.prepared(angle));
         uses.prepared(distance);
         limit.iter().for_each(|limit| uses.prepared(limit));
         uses.prepared(succeeds);
@@ -205,6 +206,10 @@ impl Uses {
             Motion::Joints(value, _)
             | Motion::Keyframe(value, ..)
             | Motion::Relative(value, ..) => self.expression(value),
+            Motion::Turned(angle, advance, ..) => {
+                self.expression(angle);
+                self.expression(advance);
+            }
             Motion::Always(..) | Motion::Position(..) => {}
         }
     }

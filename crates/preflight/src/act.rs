@@ -10,8 +10,8 @@ use crate::state::{State, Word};
 use crate::trace::{Deed, Node};
 use crate::verdict::{Verdict, because};
 use crate::worlds::WorldId;
-use obverse_geometry::Pose;
-use obverse_isa::{Family, Instr, KeyframeId, LocalId, Setting, SpeedId};
+use obverse_geometry::{JointConfiguration, Pose};
+use obverse_isa::{Axis, Family, Frame, Instr, KeyframeId, LocalId, Setting, SpeedId};
 use obverse_sim::cell::InputRule;
 use obverse_vm::{Direction, convert};
 use obverse_workcell::{Items, MotionEnd, Path, Speed, ToolId};
@@ -351,6 +351,10 @@ impl Explorer<'_> {
         };
         let aim = match instr {
             Instr::MoveAlways { .. } => self.named(operands.word(0)).unwrap_or(Aim::NotKnown),
+            Instr::MoveTurn { axis, frame, .. } | Instr::MoveTurnGuarded { axis, frame, .. } => {
+                let start = self.worlds.joints(state.world);
+                start.map_or(Aim::NotKnown, |start| turn(Some(start), (0.0, 0.0), axis, frame))
+            }
             _ => self.worlds.joints(state.world).map_or(Aim::NotKnown, Aim::Joints),
         };
         Command {
@@ -380,6 +384,10 @@ impl Explorer<'_> {
             let displaced = |distance_m| Aim::Displaced { distance_m, axis, frame };
             Some(or_not_known(operands.real(0).map(displaced)))
         };
+        let turned = |axis, frame| {
+            let by = operands.real(0).zip(operands.real(1));
+            Some(or_not_known(by.map(|by| turn(None, by, axis, frame))))
+        };
         let (aim, path) = match instr {
             Instr::MoveJoint { .. } => (joints(0), Path::Joint),
             Instr::MoveLinear { .. } => (joints(0), Path::Linear),
@@ -399,6 +407,11 @@ impl Explorer<'_> {
                 let frame = convert::frame(frame);
                 (Some(or_not_known(by_m.map(|by_m| Aim::Offset { by_m, frame }))), Path::Linear)
             }
+            Instr::MoveTurn { axis, frame, .. } => (turned(axis, frame), Path::Linear),
+            Instr::MoveTurnGuarded { axis, frame, .. } => {
+                guard = Guard::Ends(operands.real(2));
+                (turned(axis, frame), Path::Linear)
+            }
             Instr::MoveSlot { slot, path } => {
                 let position = state.frame().slots[slot.index()];
                 (Some(or_not_known(position.map(Aim::Joints))), convert::path(path))
@@ -415,7 +428,7 @@ impl Explorer<'_> {
     fn named(&self, word: Word) -> Option<Aim> {
         let index = usize::try_from(word?).ok()?;
         let (_, joints) = self.values.module.joints.get(index)?;
-        Some(Aim::Joints(obverse_geometry::JointConfiguration(*joints)))
+        Some(Aim::Joints(JointConfiguration(*joints)))
     }
 
     /// A keyframe of an item; none if the item has no such keyframe, which is a trap.
@@ -428,6 +441,17 @@ impl Explorer<'_> {
         let offset = Pose::from_rotation_vector(keyframe.position_m, keyframe.rotation_rad);
         Some(Aim::Pose(nominal.compose(&offset)))
     }
+}
+
+/// A turn by an angle in radians and a length in metres, from where the arm stands or elsewhere.
+fn turn(
+    from: Option<JointConfiguration>,
+    (angle_rad, advance_m): (f64, f64),
+    axis: Axis,
+    frame: Frame,
+) -> Aim {
+    let (axis, frame) = (convert::axis(axis), convert::frame(frame));
+    Aim::Turned { from, angle_rad, advance_m, axis, frame }
 }
 
 /// The speed that holds: the first of these settings that names one, and else the normal one.

@@ -101,10 +101,9 @@ impl Explorer<'_> {
     fn restores(&self, node: &Node) -> bool {
         match &node.deed {
             Deed::Move { back, .. } => match (back.aim, self.worlds.joints(node.before)) {
-                (Aim::Joints(to), Some(from)) => to.same_bits(&from),
                 // Recorded, and not known here.
                 (Aim::NotKnown, _) => true,
-                _ => false,
+                (aim, from) => from.is_some_and(|from| aim.leads_back_to(&from)),
             },
             Deed::Unfollowed { restores } => *restores,
             Deed::BlockSkip { .. } | Deed::BlockReplace { .. } => false,

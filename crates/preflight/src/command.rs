@@ -19,6 +19,14 @@ pub(crate) enum Aim {
         by_m: [f64; 3],
         frame: Frame,
     },
+    /// From where the arm stands, or from elsewhere where it leads back.
+    Turned {
+        from: Option<JointConfiguration>,
+        angle_rad: f64,
+        advance_m: f64,
+        axis: Axis,
+        frame: Frame,
+    },
     NotKnown,
 }
 
@@ -43,6 +51,19 @@ pub(crate) struct Command {
     pub(crate) guard: Guard,
 }
 
+impl Aim {
+    /// Whether it leads to a configuration, bit for bit, from wherever the arm stands.
+    pub(crate) fn leads_back_to(&self, start: &JointConfiguration) -> bool {
+        match self {
+            Self::Joints(to) => to.same_bits(start),
+            Self::Turned { from: Some(from), angle_rad, advance_m, .. } => {
+                from.same_bits(start) && *angle_rad == 0.0 && *advance_m == 0.0
+            }
+            _ => false,
+        }
+    }
+}
+
 impl Command {
     /// The motion, from where the arm stands; none if part of it is not known.
     pub(crate) fn motion(&self, from: JointConfiguration) -> Option<Motion> {
@@ -53,6 +74,10 @@ impl Command {
                 Goal::Displaced { from, distance_m, axis, frame }
             }
             Aim::Offset { by_m, frame } => Goal::Offset { from, by_m, frame },
+            Aim::Turned { from: fixed, angle_rad, advance_m, axis, frame } => {
+                let from = fixed.unwrap_or(from);
+                Goal::Turned { from, angle_rad, advance_m, axis, frame }
+            }
             Aim::NotKnown => return None,
         };
         let (path, speed, tool) = (self.path?, self.speed?, self.tool?);
@@ -94,6 +119,11 @@ impl Command {
             Aim::Offset { by_m, frame } => {
                 numbers.extend([3, *frame as u64]);
                 numbers.extend(by_m.map(f64::to_bits));
+            }
+            Aim::Turned { from, angle_rad, advance_m, axis, frame } => {
+                numbers.extend([5, *axis as u64, *frame as u64]);
+                numbers.extend([angle_rad, advance_m].map(|by| by.to_bits()));
+                numbers.extend(from.iter().flat_map(JointConfiguration::bits));
             }
             Aim::NotKnown => numbers.push(4),
         }

@@ -9,7 +9,7 @@ use crate::reason::Reason;
 use crate::verdict::{Verdict, of_fault};
 use obverse_geometry::JointConfiguration;
 use obverse_sim::{Cell, Plan, Sim};
-use obverse_workcell::{Arm, Fault, Gripper, Motion, MotionReport, Path};
+use obverse_workcell::{Arm, Fault, Goal, Gripper, Motion, MotionReport, Path};
 use std::collections::HashMap;
 use std::rc::Rc;
 
@@ -31,6 +31,8 @@ enum Stand {
     Known,
     /// Somewhere on the straight line that a guarded move took from here.
     OnLineFrom(JointConfiguration),
+    /// Somewhere on the way of a guarded turn from here.
+    OnTurnFrom(JointConfiguration),
     NotKnown,
 }
 
@@ -238,12 +240,14 @@ impl Worlds {
         };
         match world.stand {
             Stand::Known => self.answer_known(&world, &motion, command.guard),
-            Stand::OnLineFrom(start) if leads_back(command, &start) => {
+            Stand::OnLineFrom(start) | Stand::OnTurnFrom(start)
+                if leads_back(command, world.stand) =>
+            {
                 // A part of a way that was looked at already, the other way round.
                 let after = self.placed(&world, start);
                 self.said(Verdict::new(Reason::Fine), after)
             }
-            Stand::OnLineFrom(_) | Stand::NotKnown => {
+            Stand::OnLineFrom(_) | Stand::OnTurnFrom(_) | Stand::NotKnown => {
                 self.answer_from_anywhere(&world, command, &motion)
             }
         }
@@ -251,7 +255,11 @@ impl Worlds {
 
     fn answer_known(&mut self, world: &World, motion: &Motion, guard: Guard) -> Answer {
         let may_end_before = matches!(guard, Guard::Ends(_));
-        let stand = Stand::OnLineFrom(world.plan.workcell().joints());
+        let start = world.plan.workcell().joints();
+        let stand = match motion.goal {
+            Goal::Turned { .. } => Stand::OnTurnFrom(start),
+            _ => Stand::OnLineFrom(start),
+        };
         let otherwise = may_end_before.then(|| self.keep(World { stand, ..world.clone() }));
         let Some((outcome, plan)) = world.plan.after(motion) else {
             let after = match world.plan.end_of(motion) {
@@ -300,7 +308,7 @@ impl Worlds {
         let by_joints = Motion { path: Path::Joint, ..*motion };
         let goal: Result<JointConfiguration, Fault> = match command.aim {
             Aim::Joints(_) | Aim::Pose(_) => world.plan.end_of(&by_joints),
-            Aim::Displaced { .. } | Aim::Offset { .. } | Aim::NotKnown => {
+            Aim::Displaced { .. } | Aim::Offset { .. } | Aim::Turned { .. } | Aim::NotKnown => {
                 let after = self.lost(world);
                 return self.unclear(Reason::StartNotKnown, after);
             }
@@ -338,9 +346,14 @@ impl Worlds {
     }
 }
 
-/// Whether a motion goes straight back to where a guarded one began.
-fn leads_back(command: &Command, start: &JointConfiguration) -> bool {
-    let is_there = matches!(command.aim, Aim::Joints(to) if to.same_bits(start));
+/// Whether a motion goes back by the way of a guarded one to where that began.
+fn leads_back(command: &Command, stand: Stand) -> bool {
+    let is_turn = matches!(command.aim, Aim::Turned { .. });
+    let is_there = match stand {
+        Stand::OnLineFrom(start) => !is_turn && command.aim.leads_back_to(&start),
+        Stand::OnTurnFrom(start) => is_turn && command.aim.leads_back_to(&start),
+        Stand::Known | Stand::NotKnown => false,
+    };
     is_there && command.path == Some(Path::Linear) && command.guard == Guard::None
 }
 
@@ -357,6 +370,10 @@ impl World {
             }
             Stand::OnLineFrom(start) => {
                 numbers.push(1);
+                numbers.extend(start.bits());
+            }
+            Stand::OnTurnFrom(start) => {
+                numbers.push(3);
                 numbers.extend(start.bits());
             }
             Stand::NotKnown => numbers.push(2),

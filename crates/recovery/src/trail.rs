@@ -60,8 +60,7 @@ impl Action {
         let is_motion = event.report.is_some();
         let acts = event.instr.info().family.commands_workcell();
         self.only_moves &= event.open_blocks == 0 && (is_motion || !acts);
-        let is_guarded =
-            matches!(event.instr, Instr::MoveGuarded { .. } | Instr::MoveGuardedOpposite { .. });
+        let is_guarded = event.instr.is_guarded();
         let was_guarded = self.motion.is_some_and(|(_, is_guarded)| is_guarded);
         if event.report.is_some() && (is_guarded || !was_guarded) {
             self.motion = Some((event.pc, is_guarded));

@@ -437,6 +437,8 @@ pub enum MoveClause<'s> {
         /// In which frame; the TCP's where none is named.
         frame: Option<Spanned<FrameWord>>,
     },
+    /// `turn 720 deg advancing 2 mm forward in tcp`, in place of a distance.
+    Turn(Turn<'s>),
     /// `stop if force > 5 N` (rule Aquery).
     StopIf(Expression<'s>),
     /// `speed slow` (rule Asetting).
@@ -832,6 +834,28 @@ pub enum Target<'s> {
         /// In which frame; the TCP's where none is named.
         frame: Option<Spanned<FrameWord>>,
     },
+    /// `turn 720 deg forward`, a statement without the word `move`.
+    Turned(Turn<'s>),
+}
+
+/// `turn 720 deg advancing 2 mm forward in tcp`: about an axis through the TCP, by the right hand.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Turn<'s> {
+    /// By what angle; whole turns count.
+    pub angle: Expression<'s>,
+    /// How far along the axis meanwhile; nowhere where nothing is said.
+    pub advance: Option<Expression<'s>>,
+    /// About which axis.
+    pub heading: Spanned<Heading>,
+    /// In which frame; the TCP's where none is named.
+    pub frame: Option<Spanned<FrameWord>>,
+}
+
+impl<'s> Turn<'s> {
+    /// Its angle, and how far it advances if that is said.
+    pub fn amounts(&self) -> impl Iterator<Item = &Expression<'s>> {
+        std::iter::once(&self.angle).chain(&self.advance)
+    }
 }
 
 /// How an assignment changes its variable.

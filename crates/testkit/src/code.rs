@@ -518,8 +518,8 @@ impl Body<'_, '_> {
     fn act(&mut self) -> Result<()> {
         let bit = Bit(u16::from(self.pick(8)?));
         // A move back to where the program was last asks that no other branch moves.
-        let first = if self.is_beside() { 8 } else { 0 };
-        match self.u.int_in_range(first..=11)? {
+        let first = if self.is_beside() { 9 } else { 0 };
+        match self.u.int_in_range(first..=12)? {
             0 => {
                 self.joints()?;
                 self.code.push(op::MoveJoint { prefix: P });
@@ -563,12 +563,13 @@ impl Body<'_, '_> {
                 let path = self.path()?;
                 self.code.push(op::MoveSlot { slot, path });
             }
-            8 | 9 => {
+            8 => self.turn()?,
+            9 | 10 => {
                 self.length();
                 let level = if self.flip()? { Level::High } else { Level::Low };
                 self.code.push(op::OutputSet { prefix: P, bit, level });
             }
-            10 => {
+            11 => {
                 self.length();
                 self.code.push(op::OutputToggle { prefix: P, bit });
             }
@@ -576,6 +577,19 @@ impl Body<'_, '_> {
                 self.length();
                 self.code.push(op::Wait { prefix: P });
             }
+        }
+        Ok(())
+    }
+
+    fn turn(&mut self) -> Result<()> {
+        self.length();
+        self.length();
+        let (axis, frame) = (Axis::PlusZ, Frame::Tcp);
+        if self.flip()? {
+            self.code.push(op::MoveTurn { prefix: P, axis, frame });
+        } else {
+            self.length();
+            self.code.push(op::MoveTurnGuarded { prefix: P, axis, frame });
         }
         Ok(())
     }

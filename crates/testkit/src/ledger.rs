@@ -99,8 +99,9 @@ impl Ledger {
                 from_numbers(*from, by.as_slice())
             }
             Goal::Offset { from, by_m, .. } => from_numbers(*from, by_m),
-            Goal::Turned { from, angle_rad, advance_m, .. } => {
-                from_numbers(*from, &[*advance_m, *angle_rad])
+            Goal::Turned { from, angle_rad, advance_m, axis, .. } => {
+                let [along, about] = [*advance_m, *angle_rad].map(|by| axis.unit() * by);
+                from_numbers(*from, &[along.x, along.y, along.z, about.x, about.y, about.z])
             }
         }
     }

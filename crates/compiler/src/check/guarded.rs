@@ -18,7 +18,7 @@ use crate::types::ValueType;
 use obverse_bytecode::FunctionKind;
 use obverse_isa::{FunctionId, Instr, SlotId, Type};
 use obverse_syntax::ast::{
-    self, AdvancedMove, Behaviour, BinaryOperator, FrameWord, Heading, MoveClause, SpeedWord,
+    self, AdvancedMove, Behaviour, BinaryOperator, FrameWord, Heading, MoveClause, SpeedWord, Turn,
 };
 use obverse_syntax::codes::Code;
 use obverse_syntax::diagnostic::Diagnostic;
@@ -32,15 +32,20 @@ const PERTURBATION_M: f64 = 1e-3;
 /// How often a move is tried again at the most.
 const MAX_TIMES: u64 = 1_000_000;
 
-/// The clause `distance …`.
-type DistanceClause<'a, 's> =
-    (&'a ast::Expression<'s>, Spanned<Heading>, Option<Spanned<FrameWord>>);
+/// The clause `distance …` or `turn …`.
+struct WayClause<'a, 's> {
+    angle: Option<&'a ast::Expression<'s>>,
+    /// Of a turn, how far it advances.
+    distance: Option<&'a ast::Expression<'s>>,
+    heading: Heading,
+    frame: Option<Spanned<FrameWord>>,
+}
 
 /// The clauses of an advanced move by kind, with their places.
 #[derive(Default)]
 struct Clauses<'a, 's> {
     requires: Option<((&'a ast::Expression<'s>, Option<ast::Name<'s>>), Span)>,
-    distance: Option<(DistanceClause<'a, 's>, Span)>,
+    way: Option<(WayClause<'a, 's>, Span)>,
     stop_if: Option<(&'a ast::Expression<'s>, Span)>,
     speed: Option<(SpeedWord, Span)>,
     succeeds_if: Option<(&'a ast::Expression<'s>, Span)>,
@@ -56,8 +61,8 @@ impl<'s> Checker<'s> {
         id: FunctionId,
         written: &AdvancedMove<'s>,
     ) -> Option<Function> {
-        let clauses = self.gather_move_clauses(&written.clauses);
-        let Some((distance, motion)) = clauses.distance else {
+        let mut clauses = self.gather_move_clauses(&written.clauses);
+        let Some((way, motion)) = clauses.way.take() else {
             let message =
                 format!("the advanced move `{}` does not say how far it goes", written.name.value);
             let diagnostic = Diagnostic::error(
@@ -72,7 +77,7 @@ impl<'s> Checker<'s> {
         };
         let check = |checker: &mut Self| {
             let end = last_byte(written.span);
-            Body::Guarded(Box::new(checker.guarded(&clauses, distance, motion, end)))
+            Body::Guarded(Box::new(checker.guarded(&clauses, &way, motion, end)))
         };
         Some(self.function(id, written.name, FunctionKind::AdvancedMove, check))
     }
@@ -90,8 +95,15 @@ impl<'s> Checker<'s> {
                     ("requires", once(&mut clauses.requires, clause, span))
                 }
                 MoveClause::Distance { distance, heading, frame } => {
-                    let clause = (distance, *heading, *frame);
-                    ("distance", once(&mut clauses.distance, clause, span))
+                    let (heading, frame) = (heading.value, *frame);
+                    let way = WayClause { angle: None, distance: Some(distance), heading, frame };
+                    ("distance", once(&mut clauses.way, way, span))
+                }
+                MoveClause::Turn(Turn { angle, advance, heading, frame }) => {
+                    let (angle, distance) = (Some(angle), advance.as_ref());
+                    let (heading, frame) = (heading.value, *frame);
+                    let way = WayClause { angle, distance, heading, frame };
+                    ("turn", once(&mut clauses.way, way, span))
                 }
                 MoveClause::StopIf(condition) => {
                     ("stop if", once(&mut clauses.stop_if, condition, span))
@@ -120,13 +132,13 @@ impl<'s> Checker<'s> {
     fn guarded(
         &mut self,
         clauses: &Clauses<'_, 's>,
-        (distance, heading, frame): DistanceClause<'_, 's>,
+        way: &WayClause<'_, 's>,
         motion: Span,
         end: Span,
     ) -> GuardedMove {
         let requires = clauses.requires.map(|(requires, span)| self.move_requires(requires, span));
-        let distance = self.move_distance(distance);
-        let (axis, frame) = direction(heading.value, frame);
+        let (angle, distance) = self.move_amounts(way, motion);
+        let (axis, frame) = direction(way.heading, way.frame);
         let limit = clauses.stop_if.map(|(condition, span)| self.force_limit(condition, span));
         if limit.as_ref().is_some_and(|limit| !limit.value.of_type.is_unknown()) {
             self.warn_of_silent_stop(clauses);
@@ -143,6 +155,7 @@ impl<'s> Checker<'s> {
         };
         let (succeeds, succeeds_span) = match clauses.succeeds_if {
             Some((condition, span)) => (self.succeeds(condition, results), span),
+            None if angle.is_some() => (was_not_stopped(limit.as_ref(), results, motion), motion),
             None => (came_all_the_way(&distance.value, results, motion), motion),
         };
         let (on_success, repeat) = self.aftermath(clauses.on_success);
@@ -156,9 +169,17 @@ impl<'s> Checker<'s> {
             self.frame.layout.slots.push("$initial".to_owned());
             SlotId(0)
         });
+        if angle.is_some() {
+            let returns = [&on_success, &on_failure].map(|aftermath| aftermath.returns);
+            let opposite = clauses.opposite.map(|((), span)| span);
+            let unturned = returns.into_iter().chain([repeat.as_ref().map(|repeat| repeat.span)]);
+            let first = unturned.chain([opposite]).flatten().next();
+            first.into_iter().for_each(|span| self.report_not_of_a_turn(span, motion));
+        }
         let spans = MoveSpans { motion, succeeds: succeeds_span, end };
         GuardedMove {
             requires,
+            angle,
             distance,
             axis,
             frame,
@@ -173,6 +194,16 @@ impl<'s> Checker<'s> {
             initial,
             spans,
         }
+    }
+
+    /// Where a turn began may be whole turns away, and only reversing turns the tool back.
+    fn report_not_of_a_turn(&mut self, span: Span, motion: Span) {
+        let message = "a turn is taken back by reversing alone";
+        let diagnostic =
+            Diagnostic::error(Code::MisplacedBehaviour, span, message, "cannot stand here")
+                .with_label(motion, "the turn")
+                .with_help("throw an error that recovers `by reversing`, or leave this out");
+        self.reports.add(diagnostic);
     }
 
     fn report_nothing_opposed(&mut self, span: Span) {
@@ -216,6 +247,24 @@ impl<'s> Checker<'s> {
             _ => Unmet::Fails(reason),
         };
         (condition, unmet)
+    }
+
+    /// How far it is turned, if it is, and how far it goes.
+    fn move_amounts(
+        &mut self,
+        way: &WayClause<'_, 's>,
+        motion: Span,
+    ) -> (Option<Prepared>, Prepared) {
+        let Some(angle) = way.angle else {
+            let nowhere = || alone(Expression::missing(motion));
+            return (None, way.distance.map_or_else(nowhere, |far| self.move_distance(far)));
+        };
+        let angle = self.stored(angle, &Need::new(ValueType::ANGLE, "`turn`"));
+        let advance = match way.distance {
+            Some(advance) => self.stored(advance, &Need::new(ValueType::LENGTH, "`advancing`")),
+            None => alone(Expression::real(0.0, ValueType::LENGTH, motion)),
+        };
+        (Some(angle), advance)
     }
 
     fn move_distance(&mut self, written: &ast::Expression<'s>) -> Prepared {
@@ -364,4 +413,17 @@ fn came_all_the_way(distance: &Expression, results: MoveResults, span: Span) -> 
     let needed = binary(Instr::RealSub {}, distance.clone(), shortfall, ValueType::LENGTH, span);
     let came = Expression::local(results.distance, ValueType::LENGTH, span);
     alone(binary(Instr::RealLe {}, needed, came, ValueType::Bool, span))
+}
+
+/// Whether a turn was not stopped by its force.
+fn was_not_stopped(limit: Option<&Prepared>, results: MoveResults, span: Span) -> Prepared {
+    let Some(limit) = limit else {
+        let kind = ExpressionKind::Bool(true);
+        return alone(Expression { kind, of_type: ValueType::Bool, span });
+    };
+    if limit.value.of_type.is_unknown() {
+        return alone(Expression::missing(span));
+    }
+    let felt = Expression::local(results.force, ValueType::FORCE, span);
+    alone(binary(Instr::RealLe {}, felt, limit.value.clone(), ValueType::Bool, span))
 }

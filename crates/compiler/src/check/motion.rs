@@ -53,6 +53,17 @@ impl<'s> Checker<'s> {
                 let (axis, frame) = direction(heading.value, *frame);
                 Motion::Relative(distance, axis, frame)
             }
+            Target::Turned(turn) => {
+                let angle = self.value(&turn.angle, &Need::new(ValueType::ANGLE, "`turn`"));
+                let advance = match &turn.advance {
+                    Some(advance) => {
+                        self.value(advance, &Need::new(ValueType::LENGTH, "`advancing`"))
+                    }
+                    None => Expression::real(0.0, ValueType::LENGTH, span),
+                };
+                let (axis, frame) = direction(turn.heading.value, turn.frame);
+                Motion::Turned(angle, advance, axis, frame)
+            }
         };
         if let Some(always) = always {
             let message = "only a move to a joint configuration can be reversible always";

@@ -150,7 +150,9 @@ fn first_to_place(block: &Block<'_>) -> Option<Span> {
     let mut first = None;
     walk::each_in(block, &mut |statement| {
         let goes = match &statement.kind {
-            StatementKind::Move { target, .. } => !matches!(target, Target::Relative { .. }),
+            StatementKind::Move { target, .. } => {
+                !matches!(target, Target::Relative { .. } | Target::Turned(_))
+            }
             StatementKind::Call { .. } => true,
             _ => false,
         };

@@ -5,8 +5,8 @@ use super::effect::Declared;
 use super::place::{Arm, Base, Spot, Way, opposite};
 use super::refusal::refusal;
 use super::walk;
-use obverse_syntax::ast::{Expression, Name, StatementKind, Target};
-use obverse_syntax::span::{Span, Spanned};
+use obverse_syntax::ast::{Expression, Heading, Name, StatementKind, Target, Turn};
+use obverse_syntax::span::Span;
 use std::collections::HashMap;
 
 impl<'p> Inverter<'p> {
@@ -18,24 +18,34 @@ impl<'p> Inverter<'p> {
         always: Option<Span>,
         span: Span,
     ) -> Vec<Emitted<'p>> {
-        let Target::Relative { distance, heading, frame } = target else {
-            let Some(spot) = Spot::of(target, self.tool) else { return Vec::new() };
-            let back = self.way_back(span);
-            self.arm = Arm::at(spot);
-            let back = back.map(|target| StatementKind::Move { target, linear, always });
-            return back.map(|kind| Emitted::new(kind, span)).into_iter().collect();
+        if let Target::Relative { heading, .. } | Target::Turned(Turn { heading, .. }) = target {
+            self.shift(target, heading.value, span);
+            let target = opposite_of(target);
+            return vec![Emitted::new(StatementKind::Move { target, linear, always }, span)];
+        }
+        let Some(spot) = Spot::of(target, self.tool) else { return Vec::new() };
+        let back = self.way_back(span);
+        self.arm = Arm::at(spot);
+        let back = back.map(|target| StatementKind::Move { target, linear, always });
+        back.map(|kind| Emitted::new(kind, span)).into_iter().collect()
+    }
+
+    /// The arm is led away from a place, straight or by a turn.
+    fn shift(&mut self, target: &'p Target<'p>, heading: Heading, span: Span) {
+        let (by, frame): (Vec<&Expression<'p>>, _) = match target {
+            Target::Relative { distance, frame, .. } => (vec![distance], frame),
+            Target::Turned(turn) => (turn.amounts().collect(), &turn.frame),
+            Target::Named(_) | Target::Keyframe { .. } => return,
         };
-        self.require_pure(distance);
+        by.iter().for_each(|amount| self.require_pure(amount));
         let way = Way {
-            distance: distance.clone(),
-            heading: heading.value,
+            by: by.into_iter().cloned().collect(),
+            is_turn: matches!(target, Target::Turned(_)),
+            heading,
             frame: frame.map(|frame| frame.value),
             tool: self.tool,
         };
         self.arm.go(way, span);
-        let heading = Spanned::new(opposite(heading.value), heading.span);
-        let target = Target::Relative { distance: distance.clone(), heading, frame: *frame };
-        vec![Emitted::new(StatementKind::Move { target, linear, always }, span)]
     }
 
     /// Where a move that begins here leads back to; refused where that has no name.
@@ -157,4 +167,13 @@ impl<'p> Inverter<'p> {
             }
         }
     }
+}
+
+/// The same, the other way: what turns about the opposite axis turns and goes back.
+fn opposite_of<'s>(target: &Target<'s>) -> Target<'s> {
+    let mut target = target.clone();
+    if let Target::Relative { heading, .. } | Target::Turned(Turn { heading, .. }) = &mut target {
+        heading.value = opposite(heading.value);
+    }
+    target
 }

@@ -26,7 +26,7 @@ impl<'s> Spot<'s> {
             Target::Named(_) | Target::Keyframe { .. } => {
                 Some(Self { target: target.clone(), tool })
             }
-            Target::Relative { .. } => None,
+            Target::Relative { .. } | Target::Turned(_) => None,
         }
     }
 
@@ -35,7 +35,7 @@ impl<'s> Spot<'s> {
         match &self.target {
             Target::Named(name) => name.value.to_owned(),
             Target::Keyframe { item, keyframe } => format!("{}.{}", item.value, keyframe.value),
-            Target::Relative { .. } => String::new(),
+            Target::Relative { .. } | Target::Turned(_) => String::new(),
         }
     }
 
@@ -98,10 +98,12 @@ pub(super) struct Shift<'s> {
     pub(super) span: Span,
 }
 
-/// A straight way.
+/// A straight way, or a turn.
 #[derive(Clone, Debug)]
 pub(super) struct Way<'s> {
-    pub(super) distance: Expression<'s>,
+    /// The distance; of a turn the angle, and how far it advances if that is said.
+    pub(super) by: Vec<Expression<'s>>,
+    pub(super) is_turn: bool,
     pub(super) heading: Heading,
     pub(super) frame: Option<FrameWord>,
     pub(super) tool: Tool<'s>,
@@ -114,7 +116,8 @@ impl Way<'_> {
         self.heading == opposite(other.heading)
             && frame(self) == frame(other)
             && self.tool == other.tool
-            && print_expression(&self.distance) == print_expression(&other.distance)
+            && self.is_turn == other.is_turn
+            && self.by.iter().map(print_expression).eq(other.by.iter().map(print_expression))
     }
 
     fn is_same(&self, other: &Self) -> bool {
@@ -180,7 +183,7 @@ impl<'s> Arm<'s> {
             self.base = Base::Lost("the variable that names the place is changed here", span);
         }
         for shift in &mut self.shifts {
-            let is_known = |way: &Way<'_>| walk::names_of(&way.distance).into_iter().all(&is_kept);
+            let is_known = |way: &Way<'_>| way.by.iter().flat_map(walk::names_of).all(&is_kept);
             shift.way = shift.way.take().filter(is_known);
         }
     }

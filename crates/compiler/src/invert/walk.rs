@@ -29,6 +29,7 @@ pub(super) fn each_in<'a, 's>(block: &'a Block<'s>, visit: &mut impl FnMut(&'a S
 pub(super) fn expressions<'a, 's>(statement: &'a Statement<'s>) -> Vec<&'a Expression<'s>> {
     match &statement.kind {
         StatementKind::Move { target: Target::Relative { distance, .. }, .. } => vec![distance],
+        StatementKind::Move { target: Target::Turned(turn), .. } => turn.amounts().collect(),
         StatementKind::Call { arguments, .. } => arguments.iter().collect(),
         StatementKind::Wait(value)
         | StatementKind::WaitUntil { timeout: value, .. }
@@ -116,6 +117,7 @@ pub(super) fn names_of_target<'s>(target: &Target<'s>) -> Vec<&'s str> {
         Target::Named(name) => vec![name.value],
         Target::Keyframe { item, .. } => vec![item.value],
         Target::Relative { distance, .. } => names_of(distance),
+        Target::Turned(turn) => turn.amounts().flat_map(names_of).collect(),
     }
 }
 

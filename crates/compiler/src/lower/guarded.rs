@@ -24,6 +24,7 @@ impl Lower<'_> {
         }
         let cannot = self.requires(guarded);
         self.at(guarded.spans.motion, None);
+        guarded.angle.iter().for_each(|angle| self.hoists(&angle.hoists));
         self.hoists(&guarded.distance.hoists);
         guarded.limit.iter().for_each(|limit| self.hoists(&limit.hoists));
         if let Some((_, former)) = guarded.speed {
@@ -77,24 +78,30 @@ impl Lower<'_> {
         if let Some((speed, _)) = guarded.speed {
             self.set(&SettingValue::Speed(speed));
         }
-        self.expression(&guarded.distance.value);
-        let (axis, frame) = (guarded.axis, guarded.frame);
-        match &guarded.limit {
-            Some(limit) => {
-                self.expression(&limit.value);
-                self.push(match guarded.is_opposed {
-                    true => Instr::MoveGuardedOpposite { prefix: PREFIX, axis, frame },
-                    false => Instr::MoveGuarded { prefix: PREFIX, axis, frame },
-                });
-            }
-            None => self.push(Instr::MoveRelative { prefix: PREFIX, axis, frame }),
-        }
+        self.motion_itself(guarded);
         self.push(Instr::SenseDistance { local: guarded.results.distance });
         self.push(Instr::SensePeakForce { local: guarded.results.force });
         if let Some((_, former)) = guarded.speed {
             self.restore(Setting::Speed, former);
         }
         self.end_if_moved_wrong();
+    }
+
+    fn motion_itself(&mut self, guarded: &GuardedMove) {
+        guarded.angle.iter().for_each(|angle| self.expression(&angle.value));
+        self.expression(&guarded.distance.value);
+        guarded.limit.iter().for_each(|limit| self.expression(&limit.value));
+        let (prefix, axis, frame) = (PREFIX, guarded.axis, guarded.frame);
+        let (is_turn, is_limited) = (guarded.angle.is_some(), guarded.limit.is_some());
+        self.push(match (is_turn, is_limited) {
+            (true, true) => Instr::MoveTurnGuarded { prefix, axis, frame },
+            (true, false) => Instr::MoveTurn { prefix, axis, frame },
+            (false, true) if guarded.is_opposed => {
+                Instr::MoveGuardedOpposite { prefix, axis, frame }
+            }
+            (false, true) => Instr::MoveGuarded { prefix, axis, frame },
+            (false, false) => Instr::MoveRelative { prefix, axis, frame },
+        });
     }
 
     /// After a motion: the move ends if it has met a fault that the program calls an error.

@@ -121,6 +121,12 @@ impl Lower<'_> {
                 let (axis, frame) = (*axis, *frame);
                 self.push(Instr::MoveRelative { prefix: PREFIX, axis, frame });
             }
+            Motion::Turned(angle, advance, axis, frame) => {
+                self.expression(angle);
+                self.expression(advance);
+                let (axis, frame) = (*axis, *frame);
+                self.push(Instr::MoveTurn { prefix: PREFIX, axis, frame });
+            }
             Motion::Position(slot, path) => {
                 self.push(Instr::MoveSlot { slot: *slot, path: *path });
             }

@@ -80,6 +80,24 @@ fn a_way_that_is_followed_back_needs_no_name() {
         &["move to a", "move 2 mm up in base", "wait 1 s", "move 2 mm down in base", "move to b"],
         &["move to b", "move to a", "move 2 mm up in base", "wait 1 s", "move 2 mm down in base"],
     );
+    becomes(
+        &[
+            "move to a",
+            "turn 540 deg advancing 2 mm forward",
+            "wait 1 s",
+            "turn 540 deg advancing 2 mm backward",
+        ],
+        &[
+            "move to a",
+            "turn 540 deg advancing 2 mm forward",
+            "wait 1 s",
+            "turn 540 deg advancing 2 mm backward",
+        ],
+    );
+    refused(
+        "move to a\nturn 9 deg up\nturn 9 deg advancing 1 mm down\nmove to b",
+        "without a name",
+    );
     refused("move to a\nmove 2 mm up\nmove to b", "a place without a name");
     refused("move to a\nmove 2 mm up\nmove 2 mm down in base\nmove to b", "without a name");
     refused("move to a\nmove 2 mm up", "a place without a name");

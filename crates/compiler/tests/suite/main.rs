@@ -21,3 +21,4 @@ mod reversal_mistakes;
 mod reversal_words;
 mod shortfalls;
 mod statements;
+mod turns;

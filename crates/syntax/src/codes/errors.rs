@@ -328,7 +328,9 @@ macro_rules! errors {
         right ""
     MisplacedBehaviour "E0312" "a behaviour that cannot stand here"
         why "`repeat with perturbation` tries a failed move again, so that it stands once, in `on \
-             failure`."
+             failure`. Where a turn began may be whole turns away, and only reversing turns it \
+             back: neither that nor `return to initial position` nor `opposite force in reverse` \
+             stands in a move that turns."
         wrong "advanced move insert { distance 20 mm forward on success { repeat with \
                perturbation 3 times } }\n\
                sequence main { advance insert }"

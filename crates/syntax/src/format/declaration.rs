@@ -262,6 +262,7 @@ impl<'s> Writer<'s> {
                 self.word("distance");
                 self.way(distance, heading.value, *frame);
             }
+            MoveClause::Turn(turn) => self.turn(turn),
             MoveClause::StopIf(condition) => {
                 self.words(&["stop", "if"]);
                 self.expression(condition);

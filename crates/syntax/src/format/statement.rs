@@ -4,7 +4,7 @@ use super::piece::{Column, Glue};
 use super::writer::{Style, Writer};
 use crate::ast::{
     AssignOperator, Block, Expression, FrameWord, Heading, Primitive, ReverseParameter, Signal,
-    SpeedWord, Statement, StatementKind, Target, VariableDeclaration,
+    SpeedWord, Statement, StatementKind, Target, Turn, VariableDeclaration,
 };
 use crate::span::{Span, Spanned};
 
@@ -199,8 +199,12 @@ impl<'s> Writer<'s> {
     }
 
     fn motion(&mut self, target: &Target<'s>, linear: bool, always: Option<Span>) {
-        self.word("move");
         match target {
+            Target::Turned(turn) => self.turn(turn),
+            _ => self.word("move"),
+        }
+        match target {
+            Target::Turned(_) => {}
             Target::Named(name) => self.named("to", name.value),
             Target::Keyframe { item, keyframe } => {
                 self.named("to", item.value);
@@ -229,6 +233,21 @@ impl<'s> Writer<'s> {
         frame: Option<Spanned<FrameWord>>,
     ) {
         self.product(distance);
+        self.direction(heading, frame);
+    }
+
+    /// `turn 720 deg advancing 2 mm forward in tcp`
+    pub(super) fn turn(&mut self, turn: &Turn<'s>) {
+        self.word("turn");
+        self.product(&turn.angle);
+        if let Some(advance) = &turn.advance {
+            self.word("advancing");
+            self.product(advance);
+        }
+        self.direction(turn.heading.value, turn.frame);
+    }
+
+    fn direction(&mut self, heading: Heading, frame: Option<Spanned<FrameWord>>) {
         match heading {
             Heading::Forward => self.word("forward"),
             Heading::Backward => self.text("backward"),

@@ -17,6 +17,11 @@ fn a_move_goes_to_a_place_or_a_way() {
                     let frame = frame.map(|frame| frame.value);
                     format!("{} {:?} {frame:?}", show(&distance), heading.value)
                 }
+                Target::Turned(turn) => {
+                    let by: Vec<String> = turn.amounts().map(show).collect();
+                    let frame = turn.frame.map(|frame| frame.value);
+                    format!("{} {:?} {frame:?}", by.join(" on "), turn.heading.value)
+                }
             };
             shown = format!("{target} {linear} {}", always.is_some());
         });
@@ -31,6 +36,11 @@ fn a_move_goes_to_a_place_or_a_way() {
     assert_eq!(
         show_move("move (a - b) * 2 -z"),
         "((a Subtract b) Multiply 2) MinusZ None false false"
+    );
+    assert_eq!(show_move("turn 90 deg forward"), "90.0deg Forward None false false");
+    assert_eq!(
+        show_move("turn 2 * turn advancing -x -y in base"),
+        "(2 Multiply turn) on (Negate x) MinusY Some(Base) false false"
     );
 }
 

@@ -148,7 +148,8 @@ impl Generator<'_, '_> {
         let name = self.name("m");
         self.frame = Frame::new();
         self.open(&format!("advanced move {name}"));
-        let throws = self.behaviours()?;
+        let is_turn = self.one_in(3)?;
+        let throws = self.behaviours(is_turn)?;
         if self.one_in(3)? {
             let condition = self.expression(Type::Bool)?;
             if !self.errors.is_empty() && self.one_in(2)? {
@@ -158,12 +159,15 @@ impl Generator<'_, '_> {
                 self.line(&format!("requires {condition}"));
             }
         }
-        let way = self.way(true)?;
-        self.line(&format!("distance {way}"));
+        let motion = match is_turn {
+            true => self.turn()?,
+            false => format!("distance {}", self.way(true)?),
+        };
+        self.line(&motion);
         if self.one_in(2)? {
             let limit = self.choose(&["force > 5 N", "force >= abs(2 N * 2)", "1.5 N < force"])?;
             self.line(&format!("stop if {limit}"));
-            if self.one_in(2)? {
+            if !is_turn && self.one_in(2)? {
                 self.line("opposite force in reverse");
             }
         }
@@ -194,11 +198,11 @@ impl Generator<'_, '_> {
         Ok(self.taken())
     }
 
-    /// What an advanced move does afterwards; whether failure throws.
-    fn behaviours(&mut self) -> Result<bool> {
+    /// What an advanced move does afterwards; whether failure throws. A turn is not led back.
+    fn behaviours(&mut self, is_turn: bool) -> Result<bool> {
         if self.one_in(2)? {
             self.open("on success");
-            if self.one_in(2)? {
+            if !is_turn && self.one_in(2)? {
                 self.line("return to initial position");
             }
             if !self.errors.is_empty() && self.one_in(4)? {
@@ -208,10 +212,10 @@ impl Generator<'_, '_> {
             self.close("");
         }
         self.open("on failure");
-        if self.one_in(2)? {
+        if !is_turn && self.one_in(2)? {
             self.line("return to initial position");
         }
-        if self.one_in(2)? {
+        if !is_turn && self.one_in(2)? {
             let within = self.choose(&["", " 2 mm", " (1 mm + 0.5 cm)"])?;
             let times = self.below(3)? + 1;
             self.line(&format!("repeat with perturbation{within} {times} times"));

@@ -13,6 +13,12 @@ impl Generator<'_, '_> {
         if !self.has_arm() {
             return self.output();
         }
+        if self.one_in(6)? {
+            let turn = self.turn()?;
+            self.line(&turn);
+            self.frame.knows_position = false;
+            return Ok(());
+        }
         let (target, is_named) = self.target()?;
         let linearly = self.choose(&["", " linearly"])?;
         let is_always = is_named && self.frame.knows_position && self.one_in(2)?;
@@ -56,11 +62,30 @@ impl Generator<'_, '_> {
             true => format!("(abs({distance}) + 1 mm)"),
             false => distance,
         };
+        Ok(format!("{distance} {}", self.direction()?))
+    }
+
+    /// `forward in tcp`
+    fn direction(&mut self) -> Result<String> {
         let heading = self.choose(&[
             "forward", "backward", "left", "right", "up", "down", "x", "y", "z", "-x", "-y", "-z",
         ])?;
         let frame = self.choose(&FRAMES)?;
-        Ok(format!("{distance} {heading}{frame}"))
+        Ok(format!("{heading}{frame}"))
+    }
+
+    /// `turn 720 deg advancing 2 mm forward in tcp`
+    pub(super) fn turn(&mut self) -> Result<String> {
+        let angle = match self.below(2)? {
+            0 => format!("{} deg", self.below(1000)?),
+            _ => format!("({})", self.bounded(Type::Angle)?),
+        };
+        let advance = match self.below(3)? {
+            0 => String::new(),
+            1 => format!(" advancing {} mm", self.below(30)?),
+            _ => format!(" advancing ({})", self.bounded(Type::Length)?),
+        };
+        Ok(format!("turn {angle}{advance} {}", self.direction()?))
     }
 
     /// `position p`

@@ -40,7 +40,10 @@ impl Clauses<'_> {
 /// How far, and in which direction.
 #[derive(Clone, Copy)]
 struct Way<'p> {
-    distance: &'p Expression<'p>,
+    /// If it is a turn, by what angle.
+    angle: Option<&'p Expression<'p>>,
+    /// None of a turn that does not advance.
+    distance: Option<&'p Expression<'p>>,
     heading: Heading,
     frame: Option<Spanned<FrameWord>>,
 }
@@ -55,6 +58,7 @@ struct Aftermath<'p> {
 
 /// The values that hold for all attempts.
 struct Numbers {
+    angle_rad: Option<f64>,
     distance_m: f64,
     /// None where no force stops the move: contact is a collision then.
     limit_n: Option<f64>,
@@ -90,14 +94,15 @@ impl<'p> Interpreter<'p, '_> {
     }
 
     fn numbers(&mut self, clauses: &Clauses<'p>, way: Way<'p>) -> Run<Numbers> {
-        let (distance_m, limit_n) = match clauses.limit {
-            Some(limit) => {
-                let [distance, limit] = self.values([way.distance, limit])?;
-                (distance.real(), Some(limit.real()))
-            }
-            None => (self.value(way.distance)?.real(), None),
-        };
-        Ok(Numbers { distance_m, limit_n })
+        let written = [way.angle, way.distance, clauses.limit];
+        let all: Vec<Expression<'p>> = written.into_iter().flatten().cloned().collect();
+        let mut values = self.all_values(&all)?.into_iter();
+        let mut next = |written: Option<_>| written.and_then(|_| values.next()).map(Value::real);
+        Ok(Numbers {
+            angle_rad: next(way.angle),
+            distance_m: next(way.distance).unwrap_or(0.0),
+            limit_n: next(clauses.limit),
+        })
     }
 
     /// Attempts until one succeeds, all but the first from somewhat aside; whether one did.
@@ -145,13 +150,20 @@ impl<'p> Interpreter<'p, '_> {
     fn attempt(&mut self, clauses: &Clauses<'p>, way: Way<'p>, numbers: &Numbers) -> Run<bool> {
         let before = self.speed;
         self.speed = clauses.speed.map_or(before, speed);
-        let goal = self.displaced(numbers.distance_m, way.heading, way.frame);
+        let by_m = numbers.distance_m;
+        let goal = match numbers.angle_rad {
+            Some(angle_rad) => self.turned([angle_rad, by_m], way.heading, way.frame),
+            None => self.displaced(by_m, way.heading, way.frame),
+        };
         let report = self.go(goal, Path::Linear, numbers.limit_n)?;
         self.speed = before;
         if !clauses.matters() {
             return Ok(true);
         }
         let Some(condition) = clauses.succeeds else {
+            if way.angle.is_some() {
+                return Ok(numbers.limit_n.is_none_or(|limit_n| report.peak_force_n <= limit_n));
+            }
             return Ok(numbers.distance_m - SHORTFALL_M <= report.distance_m);
         };
         self.judged = Some(report);
@@ -170,7 +182,16 @@ fn gather<'p>(guarded: &'p AdvancedMove<'p>) -> Clauses<'p> {
                 clauses.requires = Some((condition, otherwise));
             }
             MoveClause::Distance { distance, heading, frame } => {
-                clauses.way = Some(Way { distance, heading: heading.value, frame: *frame });
+                let (distance, heading) = (Some(distance), heading.value);
+                clauses.way = Some(Way { angle: None, distance, heading, frame: *frame });
+            }
+            MoveClause::Turn(turn) => {
+                clauses.way = Some(Way {
+                    angle: Some(&turn.angle),
+                    distance: turn.advance.as_ref(),
+                    heading: turn.heading.value,
+                    frame: turn.frame,
+                });
             }
             MoveClause::StopIf(condition) => clauses.limit = limit(condition),
             MoveClause::Speed(word) => clauses.speed = Some(*word),

@@ -25,6 +25,15 @@ impl<'p> Interpreter<'p, '_> {
                 let goal = self.displaced(distance_m, heading.value, *frame);
                 self.go(goal, Path::Linear, None)?;
             }
+            Target::Turned(turn) => {
+                let amounts: Vec<_> = turn.amounts().cloned().collect();
+                let mut by = [0.0; 2];
+                for (number, value) in by.iter_mut().zip(self.all_values(&amounts)?) {
+                    *number = value.real();
+                }
+                let goal = self.turned(by, turn.heading.value, turn.frame);
+                self.go(goal, Path::Linear, None)?;
+            }
         }
         Ok(())
     }
@@ -51,6 +60,18 @@ impl<'p> Interpreter<'p, '_> {
         let frame = frame.map_or(FrameWord::Tcp, |frame| frame.value);
         let axis = axis(heading, frame);
         Goal::Displaced { from: self.cell.joints(), distance_m, axis, frame: of_word(frame) }
+    }
+
+    /// A turn from where the arm is, by radians and metres.
+    pub(super) fn turned(
+        &self,
+        [angle_rad, advance_m]: [f64; 2],
+        heading: Heading,
+        frame: Option<Spanned<FrameWord>>,
+    ) -> Goal {
+        let frame = frame.map_or(FrameWord::Tcp, |frame| frame.value);
+        let (axis, frame) = (axis(heading, frame), of_word(frame));
+        Goal::Turned { from: self.cell.joints(), angle_rad, advance_m, axis, frame }
     }
 
     fn named_joints(&mut self, name: &str) -> Run<JointConfiguration> {

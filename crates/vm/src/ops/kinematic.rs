@@ -39,18 +39,13 @@ impl Acts<'_> {
 
     /// Go back, as the settings for that say. Here a force that stops the motion is a fault: the
     /// arm is not where it was.
-    fn go_back(
-        &mut self,
-        to: JointConfiguration,
-        path: Path,
-        limit_n: Option<f64>,
-    ) -> Result<(), Failure> {
+    fn go_back(&mut self, goal: Goal, path: Path, limit_n: Option<f64>) -> Result<(), Failure> {
         let force_limit_n = match (limit_n, self.reverse_force_limit_n()) {
             (Some(own), Some(set)) => Some(own.min(set)),
             (own, set) => own.or(set),
         };
         let motion = Motion {
-            goal: Goal::Joints(to),
+            goal,
             path: if self.goes_back_straight() { Path::Linear } else { path },
             speed: self.reverse_speed()?,
             tool: self.tool(),
@@ -94,7 +89,7 @@ macro_rules! motions {
                 let $this = self;
                 let _ = $this;
                 let limit_back = $limit_back;
-                $acts.go_back(start.0, $path, limit_back)
+                $acts.go_back(Goal::Joints(start.0), $path, limit_back)
             }
         }
     )*};
@@ -123,6 +118,42 @@ motions! {
     MoveSlot(op, acts, start) path(op.path) => Goal::Joints(*acts.position(op.slot)), None, None;
 }
 
+/// Turns: what force stops them going there. Going back they are turned back, since where they
+/// began may be whole turns away.
+macro_rules! turns {
+    ($($op:ident($acts:ident) $limit:expr;)*) => {$(
+        impl AfterForward<Acts<'_>> for op::$op {
+            type Saved = Joints;
+
+            fn save(&self, acts: &Acts<'_>) -> Joints {
+                acts.start()
+            }
+
+            fn forward(self, $acts: &mut Acts<'_>, start: &Joints) -> Result<(), Failure> {
+                let by = [$acts.real(0), $acts.real(1)];
+                let limit = $limit;
+                $acts.go(turned(start, by, self.axis, self.frame), Path::Linear, limit)
+            }
+
+            fn reverse(self, acts: &mut Acts<'_>, start: &Joints) -> Result<(), Failure> {
+                let back = turned(start, [0.0; 2], self.axis, self.frame);
+                acts.go_back(back, Path::Linear, None)
+            }
+        }
+    )*};
+}
+
+turns! {
+    MoveTurn(acts) None;
+    MoveTurnGuarded(acts) Some(acts.real(2));
+}
+
+/// A turn by an angle in radians, and on by metres.
+fn turned(start: &Joints, by: [f64; 2], about: isa::Axis, of: isa::Frame) -> Goal {
+    let [angle_rad, advance_m] = by;
+    Goal::Turned { from: start.0, angle_rad, advance_m, axis: axis(about), frame: frame(of) }
+}
+
 fn displaced(acts: &Acts<'_>, start: &Joints, along: isa::Axis, of: isa::Frame) -> Goal {
     Goal::Displaced { from: start.0, distance_m: acts.real(0), axis: axis(along), frame: frame(of) }
 }
@@ -144,6 +175,6 @@ impl Always<Acts<'_>> for op::MoveAlways {
 
     fn reverse(self, acts: &mut Acts<'_>) -> Result<(), Failure> {
         let goal: JointConfiguration = acts.joints(0)?;
-        acts.go_back(goal, path(self.path), None)
+        acts.go_back(Goal::Joints(goal), path(self.path), None)
     }
 }
