@@ -6,9 +6,13 @@
 
 use obverse_bytecode::{ActionKind, FunctionKind, Module};
 use obverse_geometry::JointConfiguration;
-use obverse_isa::{CheckpointId, Class, FunctionId, Instr};
+use obverse_isa::{CheckpointId, Class, Family, FunctionId, Instr};
 use obverse_vm::{Direction, Event};
 use obverse_workcell::Workcell;
+
+/// The arm is where it was if no joint is farther away than this, in radians: a micrometre at the
+/// tool.
+const SAME_PLACE_RAD: f64 = 1e-6;
 
 /// An action that was begun.
 #[derive(Clone, Debug, PartialEq)]
@@ -53,17 +57,19 @@ impl Action {
     /// take back.
     #[must_use]
     pub fn is_round_trip(&self, now: &JointConfiguration) -> bool {
-        self.only_moves && self.motion.is_some() && self.joints.same_bits(now)
+        let is_back = self.joints.largest_difference_rad(now) < SAME_PLACE_RAD;
+        self.only_moves && self.motion.is_some() && is_back
     }
 
     fn note_act(&mut self, event: &Event) {
-        let is_motion = event.report.is_some();
+        // A motion that a fault has ended has no report.
+        let is_motion = event.instr.info().family == Family::Kinematic;
         let acts = event.instr.info().family.commands_workcell();
         self.only_moves &= event.open_blocks == 0 && (is_motion || !acts);
         let is_guarded =
             matches!(event.instr, Instr::MoveGuarded { .. } | Instr::MoveGuardedOpposite { .. });
         let was_guarded = self.motion.is_some_and(|(_, is_guarded)| is_guarded);
-        if event.report.is_some() && (is_guarded || !was_guarded) {
+        if is_motion && (is_guarded || !was_guarded) {
             self.motion = Some((event.pc, is_guarded));
         }
     }
@@ -139,6 +145,13 @@ impl<'m> Trail<'m> {
     #[must_use]
     pub fn never(&self) -> Option<u32> {
         self.never
+    }
+
+    /// Whether going back so many actions takes back more than motions of the arm, so that what is
+    /// held, and how, is done anew on the way forward again.
+    #[must_use]
+    pub fn takes_back_more_than_moves(&self, actions: usize) -> bool {
+        self.actions.iter().rev().take(actions).any(|action| !action.only_moves)
     }
 
     /// How far the arm has gone, in either direction, in metres.
