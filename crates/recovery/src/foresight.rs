@@ -63,12 +63,11 @@ fn back<C: Workcell>(
     depth: usize,
 ) -> Option<()> {
     let actions = trail.actions();
-    let mark = Mark::at(actions[actions.len().checked_sub(depth)?].steps);
-    let newest = actions.last().filter(|action| action.is_round_trip(&cell.joints()));
-    if let Some(action) = newest {
-        machine.unwind_to(Mark::at(action.steps), cell).ok()?;
+    let to = actions[actions.len().checked_sub(depth)?].steps;
+    if let Some(motion) = trail.round_trip(to, &cell.joints()) {
+        machine.unwind_to(Mark::at(motion.steps), cell).ok()?;
     }
-    let stop = machine.reverse_to(mark, cell, &mut ());
+    let stop = machine.reverse_to(Mark::at(to), cell, &mut ());
     trail.cut(machine.state().steps());
     matches!(stop, Stop::AtMark | Stop::OffMark | Stop::AtStart).then_some(())
 }

@@ -306,6 +306,7 @@ impl<'p, C: Workcell> Run<'_, 'p, '_, C> {
             now_s: self.cell.now_s(),
             joints: self.cell.joints(),
             give_up_s: self.recovery.person_s,
+            attempts_left: self.attempts_left(incident),
         };
         let (actions, why) = question.answer(asked, self.recovery.memory)?;
         Ok(Plan::Back { actions, why })
@@ -313,13 +314,12 @@ impl<'p, C: Workcell> Run<'_, 'p, '_, C> {
 
     fn foresee(&mut self, index: usize) -> Result<Plan, GiveUp> {
         let incident = &self.open[index];
-        let made = incident.attempts.len() as u32;
         let site = Site {
             machine: self.machine,
             cell: &*self.cell,
             trail: &self.trail,
             incident,
-            attempts_left: self.bounds(incident).attempts.saturating_sub(made),
+            attempts_left: self.attempts_left(incident),
             policy: reversal(self.declared(incident)),
             seed: self.recovery.seed,
         };
@@ -356,6 +356,10 @@ impl<'p, C: Workcell> Run<'_, 'p, '_, C> {
         } else {
             Ok(())
         }
+    }
+
+    fn attempts_left(&self, incident: &Incident) -> u32 {
+        self.bounds(incident).attempts.saturating_sub(incident.attempts.len() as u32)
     }
 
     /// What may be spent on an incident.
@@ -404,7 +408,7 @@ impl<'p, C: Workcell> Run<'_, 'p, '_, C> {
         let (mark, pc) = (to.steps, to.pc);
         let incident = &self.open[index];
         self.teller.on_step(&Step::Back { incident, actions, to: pc, why }, self.cell);
-        self.pass_round_trip(index)?;
+        self.pass_round_trip(index, mark)?;
         let mut tries = 0;
         loop {
             let mut watch = Watch { trail: &mut self.trail, teller: &mut *self.teller };
@@ -429,14 +433,13 @@ impl<'p, C: Workcell> Run<'_, 'p, '_, C> {
         }
     }
 
-    /// An action that ended where it began is taken back in the program alone: going there again
-    /// and back would press anew on what had stopped it, for nothing.
-    fn pass_round_trip(&mut self, index: usize) -> Result<(), GiveUp> {
-        let newest = self.trail.actions().last();
-        let Some(action) = newest.filter(|it| it.is_round_trip(&self.cell.joints())) else {
+    /// Motions that ended where they began are taken back in the program alone: going there again
+    /// and back would press anew on what had stopped them, for nothing.
+    fn pass_round_trip(&mut self, index: usize, since: u64) -> Result<(), GiveUp> {
+        let Some(motion) = self.trail.round_trip(since, &self.cell.joints()) else {
             return Ok(());
         };
-        let (steps, pc) = (action.steps, action.pc);
+        let (steps, pc) = (motion.steps, motion.pc);
         let step = Step::RoundTrip { incident: &self.open[index], pc };
         self.teller.on_step(&step, self.cell);
         self.unwind(steps)
