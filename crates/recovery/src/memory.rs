@@ -18,18 +18,22 @@ pub const DEPTH_MAX: usize = 16;
 pub const ATTEMPTS_MAX: usize = 16;
 /// How many attempts that helped, and how many that did not, are believed of each depth that is
 /// enough before anything is known.
-const PRIOR_HELPED: f64 = 1.2;
-const PRIOR_FAILED: f64 = 0.8;
+const PRIOR_HELPED: f64 = 1.0;
+const PRIOR_FAILED: f64 = 1.0;
 /// The weight in incidents of what is believed of the first depth before anything is known; of each
 /// further depth half of the one before.
 const PRIOR_FIRST: f64 = 1.0;
 /// What is believed of going back never helping, before anything is known.
 const PRIOR_NEVER: f64 = 0.2;
 /// How much longer a nearer depth may be expected to take than the best, as a share, where nothing
-/// is known, and how many incidents are needed for half of that: where far ones have helped, nobody
+/// is known and nothing was tried, and how many incidents are needed for half of that: where far ones have helped, nobody
 /// knows yet whether near ones would.
 const CURIOSITY: f64 = 0.3;
 const FEW: f64 = 20.0;
+/// How many attempts in vain say that there is no help, and how many incidents that were tried out
+/// so far or recovered from must be known before that is believed.
+const TRIED_OUT: usize = 4;
+const TRIED_OUT_MIN: u64 = 20;
 /// Rounds of expectation maximisation: the shares settle to a percent in fewer.
 const ROUNDS: usize = 24;
 /// The version of the text.
@@ -98,6 +102,16 @@ impl Memory {
         known.map_or(0, |known| known.times.values().sum())
     }
 
+    /// How many of them were recovered from, or not although much was tried: who gives up early has
+    /// not learned that going on would have been in vain.
+    fn tried_out(&self, error: &str, place: &str) -> u64 {
+        let known = self.places.get(&(error.to_owned(), place.to_owned()));
+        let is_it = |kind: &Kind| kind.is_enough || kind.depths.len() >= TRIED_OUT;
+        known.map_or(0, |known| {
+            known.times.iter().filter(|(kind, _)| is_it(kind)).map(|(_, times)| times).sum()
+        })
+    }
+
     /// Remember what became of an incident: how far each attempt went back, and whether the last
     /// was enough. Without an attempt there is nothing to remember.
     pub fn learn(&mut self, error: &str, place: &str, depths: &[usize], is_enough: bool) {
@@ -132,8 +146,16 @@ impl Memory {
         for &depth in tried {
             belief.fail(depth);
         }
-        let slack = 1.0 + CURIOSITY * FEW / (FEW + known as f64);
-        let (expected_s, actions) = belief.best(costs, slack);
+        let curiosity = if tried.is_empty() { CURIOSITY } else { 0.0 };
+        let slack = 1.0 + curiosity * FEW / (FEW + known as f64);
+        let best = belief.best(costs, slack);
+        let is_worth_it = best.is_some_and(|(expected_s, _)| expected_s < costs.give_up_s);
+        let goes_on = is_worth_it || self.tried_out(error, place) < TRIED_OUT_MIN;
+        let best = best.filter(|_| goes_on);
+        let (expected_s, actions) = match best {
+            Some((expected_s, depth)) => (expected_s, Some(depth)),
+            None => (costs.give_up_s, None),
+        };
         let chance = actions.map_or(0.0, |depth| belief.chance(depth));
         Choice { actions, chance, expected_s, known }
     }
@@ -147,8 +169,11 @@ type Numbers = [f64; DEPTH_MAX + 1];
 struct Belief {
     /// How likely each depth is the least that is enough; all of them add up to 1.
     shares: Numbers,
-    /// The chance that an attempt helps that goes back far enough.
-    helps: Numbers,
+    /// Of the attempts that went back far enough, how many are believed to have helped, and how
+    /// many not: the chance that one helps is Beta distributed, so that the first that fails says
+    /// little where nothing is known, and much where they nearly always help.
+    helped: Numbers,
+    failed: Numbers,
 }
 
 fn prior() -> Numbers {
@@ -182,8 +207,11 @@ fn attempts(kind: &Kind, index: usize) -> Option<(f64, f64)> {
 
 impl Belief {
     fn of(times: &BTreeMap<Kind, u64>) -> Self {
-        let chance = PRIOR_HELPED / (PRIOR_HELPED + PRIOR_FAILED);
-        let mut belief = Self { shares: normal(prior()), helps: [chance; DEPTH_MAX + 1] };
+        let mut belief = Self {
+            shares: normal(prior()),
+            helped: [PRIOR_HELPED; DEPTH_MAX + 1],
+            failed: [PRIOR_FAILED; DEPTH_MAX + 1],
+        };
         let kinds: Vec<([Option<(f64, f64)>; DEPTH_MAX + 1], f64)> = times
             .iter()
             .map(|(kind, times)| {
@@ -204,8 +232,7 @@ impl Belief {
                     failed[index] += incidents * in_vain;
                 }
             }
-            belief.shares = normal(weights);
-            belief.helps = std::array::from_fn(|at| helped[at] / (helped[at] + failed[at]));
+            belief = Self { shares: normal(weights), helped, failed };
         }
         belief
     }
@@ -214,16 +241,20 @@ impl Belief {
     fn explain(&self, attempts: &[Option<(f64, f64)>; DEPTH_MAX + 1]) -> Numbers {
         std::array::from_fn(|index| {
             let Some((failed, helped)) = attempts[index] else { return 0.0 };
-            let helps = self.helps[index];
+            let helps = self.helps(index);
             let likely = if helped > 0.0 { helps } else { 1.0 };
             self.shares[index] * likely * libm::pow(1.0 - helps, failed)
         })
     }
 
+    /// The chance that an attempt helps that goes back far enough.
+    fn helps(&self, index: usize) -> f64 {
+        self.helped[index] / (self.helped[index] + self.failed[index])
+    }
+
     /// The chance that an attempt of a depth gets past the error.
     fn chance(&self, depth: usize) -> f64 {
-        let far = self.shares.iter().zip(&self.helps).take(depth.min(DEPTH_MAX));
-        far.map(|(share, helps)| share * helps).sum()
+        (0..depth.min(DEPTH_MAX)).map(|index| self.shares[index] * self.helps(index)).sum()
     }
 
     /// An attempt of a depth has failed.
@@ -234,23 +265,22 @@ impl Belief {
 
     /// Take from the shares what an attempt of a depth gets past.
     fn weaken(&mut self, depth: usize) {
-        let far = self.shares.iter_mut().zip(&self.helps).take(depth.min(DEPTH_MAX));
-        far.for_each(|(share, helps)| *share *= 1.0 - helps);
+        for index in 0..depth.min(DEPTH_MAX) {
+            self.shares[index] *= 1.0 - self.helps(index);
+            self.failed[index] += 1.0;
+        }
     }
 
     /// The least expected time to be past the error, and the depth to try first for it; none where
-    /// giving up costs less. Of those that take hardly longer (by a factor) it is the nearest, from
-    /// which most is learned.
-    fn best(&self, costs: Costs<'_>, slack: f64) -> (f64, Option<usize>) {
+    /// there is none. Of those that take hardly longer (by a factor) it is the nearest, from which
+    /// most is learned.
+    fn best(&self, costs: Costs<'_>, slack: f64) -> Option<(f64, usize)> {
         let depths = 1..=costs.by_depth_s.len().min(DEPTH_MAX);
         let times_s: Vec<f64> = depths.map(|first| self.expected_s(first, costs)).collect();
         let least_s = times_s.iter().copied().fold(f64::INFINITY, f64::min);
-        if least_s >= costs.give_up_s {
-            return (costs.give_up_s, None);
-        }
-        let most_s = (least_s * slack).min(costs.give_up_s);
-        let index = times_s.iter().position(|&time_s| time_s <= most_s);
-        index.map_or((costs.give_up_s, None), |index| (times_s[index], Some(index + 1)))
+        let is_it = |time_s: &f64| time_s.is_finite() && *time_s <= least_s * slack;
+        let index = times_s.iter().position(is_it)?;
+        Some((times_s[index], index + 1))
     }
 
     /// The least expected time to be past the error, if a depth is tried first. All that is learned
@@ -458,13 +488,23 @@ mod tests {
     fn who_knows_nothing_begins_near_goes_further_and_gives_up_only_at_the_end() {
         let mut memory = Memory::default();
         let mut tried = Vec::new();
-        while let Some(actions) = choose(&mut memory, &tried).actions {
-            tried.push(actions);
-            assert!(tried.len() < 40, "{tried:?}");
+        for attempts_left in (1..=12).rev() {
+            let costs = Costs { by_depth_s: &COSTS_S, give_up_s: 300.0, attempts_left };
+            tried.push(memory.choose("jam", "here", &tried, costs).actions.unwrap());
         }
-        assert!(tried[0] <= 2, "{tried:?}");
+        assert_eq!(tried[0], 1, "{tried:?}");
         assert_eq!(tried.iter().max(), Some(&COSTS_S.len()), "{tried:?}");
-        assert!(tried.len() >= 4, "{tried:?}");
+        let costs = Costs { by_depth_s: &COSTS_S, give_up_s: 300.0, attempts_left: 0 };
+        assert_eq!(memory.choose("jam", "here", &tried, costs).actions, None);
+    }
+
+    #[test]
+    fn who_has_given_up_early_has_not_learned_that_it_is_in_vain() {
+        let mut memory = Memory::default();
+        for _ in 0..100 {
+            memory.learn("jam", "here", &[1, 3], false);
+        }
+        assert!(choose(&mut memory, &[1, 3]).actions.is_some());
     }
 
     #[test]
