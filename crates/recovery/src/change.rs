@@ -1,31 +1,49 @@
 //! What is done otherwise on the way forward again.
 
+use crate::incident::{Incident, Search};
+use crate::trail::{Action, Trail};
 use obverse_bytecode::{Pattern, Reversal};
 use obverse_vm::{Alteration, Aside};
 use std::f64::consts::{PI, TAU};
 
-/// How many attempts cover the whole circle of a perturbation.
+/// How many points cover the whole circle of a perturbation.
 const SPIRAL_POINTS: f64 = 8.0;
 /// The angle between two points of a spiral that fills a circle evenly (Vogel 1979), in radians.
 const GOLDEN_ANGLE_RAD: f64 = PI * (3.0 - 2.236_067_977_499_79);
 /// What `lighter` does to a force limit at each attempt.
 const LIGHTER: f64 = 0.8;
 
-/// The changes of an attempt, counted from 1; none where the policy changes nothing. `motion` is
-/// the instruction of the motion that failed; what is random follows from the seed.
+/// The changes of the next attempt at an incident, which searches there.
+pub(crate) fn of_incident(
+    policy: &Reversal,
+    incident: &Incident,
+    trail: &Trail<'_>,
+    search: Search,
+    seed: u64,
+) -> Option<Alteration> {
+    let attempt = incident.attempts.len() as u32 + 1;
+    let motion = trail.actions().last().and_then(Action::motion);
+    of_attempt(policy, attempt, search.point, motion, seed ^ incident.number)
+}
+
+/// The changes of an attempt, counted from 1, at a point of the search pattern; none where the
+/// policy changes nothing. `motion` is the instruction of the motion that failed; what is random
+/// follows from the seed.
 #[must_use]
 pub fn of_attempt(
     policy: &Reversal,
     attempt: u32,
+    point: u32,
     motion: Option<u32>,
     seed: u64,
 ) -> Option<Alteration> {
     let slower = u8::from(policy.slower);
     let force_factor = policy.lighter.then(|| libm::pow(LIGHTER, f64::from(attempt)));
-    let aside = policy.perturbation.zip(motion).map(|(perturbation, pc)| {
+    let perturbation = policy.perturbation.filter(|_| point > 0);
+    let aside = perturbation.zip(motion).map(|(perturbation, pc)| {
         let by_m = match perturbation.pattern {
-            Pattern::Spiral => spiral_m(perturbation.limit_m, attempt),
-            Pattern::Random => random_m(perturbation.limit_m, seed, attempt),
+            Pattern::Spiral => spiral_m(perturbation.limit_m, point),
+            Pattern::Random => random_m(perturbation.limit_m, seed, point),
         };
         Aside { pc, by_m }
     });
@@ -34,14 +52,14 @@ pub fn of_attempt(
 }
 
 /// The point of a spiral search, in metres, at most `limit_m` from the middle.
-fn spiral_m(limit_m: f64, attempt: u32) -> [f64; 2] {
-    let share = (f64::from(attempt) / SPIRAL_POINTS).min(1.0);
-    polar_m(limit_m * libm::sqrt(share), f64::from(attempt) * GOLDEN_ANGLE_RAD)
+fn spiral_m(limit_m: f64, point: u32) -> [f64; 2] {
+    let share = (f64::from(point) / SPIRAL_POINTS).min(1.0);
+    polar_m(limit_m * libm::sqrt(share), f64::from(point) * GOLDEN_ANGLE_RAD)
 }
 
 /// A point drawn evenly from the circle, in metres.
-fn random_m(limit_m: f64, seed: u64, attempt: u32) -> [f64; 2] {
-    let key = mix(seed ^ u64::from(attempt).wrapping_mul(STEP));
+fn random_m(limit_m: f64, seed: u64, point: u32) -> [f64; 2] {
+    let key = mix(seed ^ u64::from(point).wrapping_mul(STEP));
     let unit = |bits: u64| (bits >> 11) as f64 / (1_u64 << 53) as f64;
     polar_m(limit_m * libm::sqrt(unit(key)), TAU * unit(mix(key ^ STEP)))
 }

@@ -25,6 +25,8 @@ pub(crate) struct Question<'q> {
     pub(crate) joints: JointConfiguration,
     /// What a person takes, in seconds.
     pub(crate) give_up_s: f64,
+    /// How many attempts there may still be.
+    pub(crate) attempts_left: u32,
 }
 
 /// What is asked for, before it is known whether the trail leads there.
@@ -104,7 +106,8 @@ impl Question<'_> {
     fn learned(&self, furthest: usize, memory: &mut Memory) -> Result<(usize, Why), GiveUp> {
         let costs_s: Vec<f64> =
             (1..=furthest.min(DEPTH_MAX)).map(|depth| self.cost_s(depth)).collect();
-        let costs = Costs { by_depth_s: &costs_s, give_up_s: self.give_up_s };
+        let (give_up_s, attempts_left) = (self.give_up_s, self.attempts_left);
+        let costs = Costs { by_depth_s: &costs_s, give_up_s, attempts_left };
         let choice = memory.choose(self.error, self.place, self.tried, costs);
         let actions = choice.actions.ok_or(GiveUp::WouldNotHelp)?;
         let (chance, expected_s, known) = (choice.chance, choice.expected_s, choice.known);
@@ -112,13 +115,12 @@ impl Question<'_> {
     }
 
     /// What going back so many actions and coming again is expected to take, in seconds: twice as
-    /// long as each took, but for one that ended where it began.
+    /// long as they took, but for motions that ended where they began.
     fn cost_s(&self, depth: usize) -> f64 {
         let actions = self.trail.actions();
-        let [.., newest] = actions else { return 0.0 };
-        let all_s = (self.now_s - actions[actions.len() - depth].began_s).max(0.0);
-        let newest_s = (self.now_s - newest.began_s).max(0.0);
-        let back_s = if newest.is_round_trip(&self.joints) { all_s - newest_s } else { all_s };
-        all_s + back_s
+        let to = &actions[actions.len() - depth];
+        let all_s = (self.now_s - to.began_s).max(0.0);
+        let passed = self.trail.round_trip(to.steps, &self.joints);
+        all_s + passed.map_or(all_s, |motion| (motion.began_s - to.began_s).max(0.0))
     }
 }

@@ -3,6 +3,7 @@
 //! It is what other strategies are measured against, since it knows what only the world knows; no
 //! real cell has it.
 
+use crate::fault;
 use crate::recover::{Foresight, Site};
 use crate::trail::Trail;
 use obverse_vm::{Direction, Event, Machine, Mark, Observer, Stop};
@@ -20,22 +21,36 @@ pub struct Clairvoyant;
 impl<C: Workcell + Clone> Foresight<C> for Clairvoyant {
     fn depth(&mut self, site: &Site<'_, '_, C>) -> Option<usize> {
         let depths = 1..=site.trail.actions().len().min(DEPTHS_MAX);
-        let times = depths.filter_map(|depth| Some((time_s(site, depth)?, depth)));
-        let best = times.min_by(|(one, _), (other, _)| one.total_cmp(other));
+        let seen = depths.filter_map(|depth| Some((look(site, depth)?, depth)));
+        let best = seen.min_by(|((one, one_s), _), ((other, other_s), _)| {
+            one.cmp(other).then(one_s.total_cmp(other_s))
+        });
         best.map(|(_, depth)| depth)
     }
 }
 
-/// How long it would take to be past the error, going back so many actions at each attempt, in
-/// seconds of the workcell's clock; none if it would not be got past.
-fn time_s<C: Workcell + Clone>(site: &Site<'_, '_, C>, depth: usize) -> Option<f64> {
+/// Where going forward again leads, the best first.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+enum Leads {
+    /// Past the error.
+    Past,
+    /// To another error, of which nothing is foreseen.
+    Elsewhere,
+    /// To the error again.
+    Again,
+}
+
+/// Where it leads to go back so many actions at each attempt, and how long that takes in seconds of
+/// the workcell's clock; none if the error would not be got past.
+fn look<C: Workcell + Clone>(site: &Site<'_, '_, C>, depth: usize) -> Option<(Leads, f64)> {
     let (mut machine, mut cell) = (site.machine.clone(), site.cell.clone());
     let mut watch = Watch(site.trail.clone());
-    for change in &site.changes {
+    for change in site.changes(depth) {
         back(&mut machine, &mut cell, &mut watch.0, depth)?;
-        machine.alter(*change);
-        if is_past(&mut machine, &mut cell, &mut watch, site)? {
-            return Some(cell.now_s() - site.cell.now_s());
+        machine.alter(change);
+        let leads = forward(&mut machine, &mut cell, &mut watch, site)?;
+        if leads != Leads::Again {
+            return Some((leads, cell.now_s() - site.cell.now_s()));
         }
     }
     None
@@ -48,23 +63,22 @@ fn back<C: Workcell>(
     depth: usize,
 ) -> Option<()> {
     let actions = trail.actions();
-    let mark = Mark::at(actions[actions.len().checked_sub(depth)?].steps);
-    let newest = actions.last().filter(|action| action.is_round_trip(&cell.joints()));
-    if let Some(action) = newest {
-        machine.unwind_to(Mark::at(action.steps), cell).ok()?;
+    let to = actions[actions.len().checked_sub(depth)?].steps;
+    if let Some(motion) = trail.round_trip(to, &cell.joints()) {
+        machine.unwind_to(Mark::at(motion.steps), cell).ok()?;
     }
-    let stop = machine.reverse_to(mark, cell, &mut ());
+    let stop = machine.reverse_to(Mark::at(to), cell, &mut ());
     trail.cut(machine.state().steps());
     matches!(stop, Stop::AtMark | Stop::OffMark | Stop::AtStart).then_some(())
 }
 
-/// Whether going forward leads past the error, or to it again; none if it leads elsewhere.
-fn is_past<C: Workcell>(
+/// Where going forward leads; none if to the end of the run.
+fn forward<C: Workcell>(
     machine: &mut Machine<'_>,
     cell: &mut C,
     watch: &mut Watch<'_>,
     site: &Site<'_, '_, C>,
-) -> Option<bool> {
+) -> Option<Leads> {
     let allowed = machine.executed().saturating_add(STEPS_MAX);
     while watch.0.count() <= site.incident.number + 1 && machine.executed() < allowed {
         match machine.step(Direction::Forward, cell, watch) {
@@ -73,12 +87,19 @@ fn is_past<C: Workcell>(
             Err(Stop::Due { error, .. }) => {
                 let entry = watch.0.actions().last().map(|action| action.entry);
                 let known = (site.incident.error, Some(site.incident.entry));
-                return ((error, entry) == known).then_some(false);
+                let is_again = (error, entry) == known;
+                return Some(if is_again { Leads::Again } else { Leads::Elsewhere });
+            }
+            Err(Stop::Fault { fault, pc, .. }) if !cell.is_stopped() => {
+                let error = fault::error_of(machine.program().module(), &fault)?;
+                if !fault::raise(machine, error, pc, cell, &mut watch.0) {
+                    return None;
+                }
             }
             Err(_) => return None,
         }
     }
-    Some(true)
+    Some(Leads::Past)
 }
 
 struct Watch<'m>(Trail<'m>);

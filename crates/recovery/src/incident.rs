@@ -4,6 +4,7 @@
 //! or gives it up. The same error at the same place while it is open is the same incident.
 
 use crate::ending::GiveUp;
+use crate::trail::Trail;
 use obverse_isa::ErrorId;
 
 /// One way back and forward again.
@@ -13,6 +14,36 @@ pub struct Attempt {
     pub actions: usize,
     /// When it began, in seconds of the workcell's clock.
     pub began_s: f64,
+    /// What was done otherwise.
+    pub search: Search,
+}
+
+/// Where an attempt searches, in a pattern around the middle.
+///
+/// What only moves the arm leaves the world as it was: the same again would fail again, and the
+/// search goes on. Where more is done anew (a part gripped, a feeder asked) the world is another,
+/// and nothing speaks for aside: the search begins in the middle, one further out each time that
+/// did not help.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Search {
+    /// Whether more than motions of the arm is done anew.
+    pub is_anew: bool,
+    /// The point of the pattern; 0 is its middle.
+    pub point: u32,
+}
+
+impl Search {
+    /// That of the attempt after others.
+    #[must_use]
+    pub fn after(earlier: impl DoubleEndedIterator<Item = Self>, is_anew: bool) -> Self {
+        let mut earlier = earlier;
+        let point = if is_anew {
+            earlier.filter(|search| search.is_anew).count() as u32
+        } else {
+            earlier.next_back().map_or(0, |newest| newest.point) + 1
+        };
+        Self { is_anew, point }
+    }
 }
 
 /// What became of an incident.
@@ -54,6 +85,13 @@ impl Incident {
         self.attempts.iter().map(|attempt| attempt.actions).collect()
     }
 
+    /// Where the next attempt searches, if it goes back so many actions of the trail.
+    #[must_use]
+    pub fn next_search(&self, trail: &Trail<'_>, actions: usize) -> Search {
+        let earlier = self.attempts.iter().map(|attempt| attempt.search);
+        Search::after(earlier, trail.takes_back_more_than_moves(actions))
+    }
+
     /// How far the attempt went back that was enough; none unless it was recovered from.
     #[must_use]
     pub fn depth_enough(&self) -> Option<usize> {
@@ -67,5 +105,20 @@ impl Incident {
     #[must_use]
     pub fn duration_s(&self) -> Option<f64> {
         self.outcome.map(|(_, ended_s)| ended_s - self.began_s)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::Search;
+
+    #[test]
+    fn a_search_goes_on_until_more_than_the_arm_is_taken_back_and_then_begins_in_the_middle() {
+        let mut made: Vec<Search> = Vec::new();
+        for is_anew in [false, false, true, false, true, true, false] {
+            made.push(Search::after(made.iter().copied(), is_anew));
+        }
+        let points: Vec<u32> = made.iter().map(|search| search.point).collect();
+        assert_eq!(points, [1, 2, 0, 1, 1, 2, 3]);
     }
 }

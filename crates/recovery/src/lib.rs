@@ -6,7 +6,8 @@
 //!
 //! Reading order: [`ending`], how a run ends; [`mod@drive`], a run that never goes back by itself;
 //! [`trail`], what it may be taken back to; [`strategy`], the ways of recovering; [`incident`], an
-//! error at a place and what has been tried; [`depth`], how far to go back next; [`memory`], what
+//! error at a place and what has been tried, with the words for a place and a fault that becomes
+//! an error (`place`, `fault`); [`depth`], how far to go back next; [`memory`], what
 //! was learned of that; [`foresight`], who would know better; [`change`], what is done otherwise on
 //! the way forward again; [`tell`], what a person is told; [`mod@recover`], the loop.
 
@@ -14,9 +15,11 @@ pub mod change;
 pub mod depth;
 pub mod drive;
 pub mod ending;
+mod fault;
 pub mod foresight;
 pub mod incident;
 pub mod memory;
+mod place;
 pub mod recover;
 pub mod strategy;
 pub mod tell;
@@ -25,7 +28,7 @@ pub mod trail;
 pub use drive::drive;
 pub use ending::{Ending, GiveUp};
 pub use foresight::Clairvoyant;
-pub use incident::{Attempt, Incident, Outcome};
+pub use incident::{Attempt, Incident, Outcome, Search};
 pub use memory::{Memory, MemoryError};
 pub use recover::{Foresight, Recovery, Site, recover};
 pub use strategy::{Bounds, Strategy};

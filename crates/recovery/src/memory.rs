@@ -2,11 +2,11 @@
 //! person can read.
 //!
 //! An incident has a depth that is enough, which nobody sees, and an attempt that goes back as far
-//! helps with a chance that is the place's: a spiral search may need several. The counts say how
-//! far each attempt of an incident went back and whether the last was enough; what they leave open
-//! of the depths is shared out by expectation maximisation (Turnbull 1976) over a prior that holds
-//! near depths likelier, for each of a few chances, which are then weighed by how well they explain
-//! the counts. Knows nothing of what an action is, nor of files on a disk.
+//! helps with a chance that belongs to that depth: a spiral search near the error may need several,
+//! where a part gripped anew nearly always helps. The counts say how far each attempt of an incident
+//! went back and whether the last was enough; what they leave open of the depths is shared out by
+//! expectation maximisation (Turnbull 1976) over a prior that holds near depths likelier. Knows
+//! nothing of what an action is, nor of files on a disk.
 
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
@@ -16,18 +16,26 @@ use std::fmt;
 pub const DEPTH_MAX: usize = 16;
 /// The most attempts of an incident that are remembered, the first ones.
 pub const ATTEMPTS_MAX: usize = 16;
-/// What the chance of an attempt that goes back far enough may be, and the weight of each before
-/// anything is known.
-const HELPS: [(f64, f64); 5] = [(0.15, 1.0), (0.3, 1.0), (0.5, 2.0), (0.7, 3.0), (0.95, 3.0)];
-/// How many attempts are thought ahead.
-const AHEAD: usize = 3;
+/// How many attempts that helped, and how many that did not, are believed of each depth that is
+/// enough before anything is known.
+const PRIOR_HELPED: f64 = 1.0;
+const PRIOR_FAILED: f64 = 1.0;
 /// The weight in incidents of what is believed of the first depth before anything is known; of each
 /// further depth half of the one before.
 const PRIOR_FIRST: f64 = 1.0;
 /// What is believed of going back never helping, before anything is known.
 const PRIOR_NEVER: f64 = 0.2;
+/// How much longer a nearer depth may be expected to take than the best, as a share, where nothing
+/// is known and nothing was tried, and how many incidents are needed for half of that: where far ones have helped, nobody
+/// knows yet whether near ones would.
+const CURIOSITY: f64 = 0.3;
+const FEW: f64 = 20.0;
+/// How many attempts in vain say that there is no help, and how many incidents that were tried out
+/// so far or recovered from must be known before that is believed.
+const TRIED_OUT: usize = 4;
+const TRIED_OUT_MIN: u64 = 20;
 /// Rounds of expectation maximisation: the shares settle to a percent in fewer.
-const ROUNDS: usize = 12;
+const ROUNDS: usize = 24;
 /// The version of the text.
 const VERSION: u32 = 1;
 /// The most kinds of incident that a text may hold.
@@ -82,6 +90,8 @@ pub struct Costs<'a> {
     pub by_depth_s: &'a [f64],
     /// Of giving up: what a person takes.
     pub give_up_s: f64,
+    /// How many attempts there may still be.
+    pub attempts_left: u32,
 }
 
 impl Memory {
@@ -90,6 +100,16 @@ impl Memory {
     pub fn known(&self, error: &str, place: &str) -> u64 {
         let known = self.places.get(&(error.to_owned(), place.to_owned()));
         known.map_or(0, |known| known.times.values().sum())
+    }
+
+    /// How many of them were recovered from, or not although much was tried: who gives up early has
+    /// not learned that going on would have been in vain.
+    fn tried_out(&self, error: &str, place: &str) -> u64 {
+        let known = self.places.get(&(error.to_owned(), place.to_owned()));
+        let is_it = |kind: &Kind| kind.is_enough || kind.depths.len() >= TRIED_OUT;
+        known.map_or(0, |known| {
+            known.times.iter().filter(|(kind, _)| is_it(kind)).map(|(_, times)| times).sum()
+        })
     }
 
     /// Remember what became of an incident: how far each attempt went back, and whether the last
@@ -126,20 +146,37 @@ impl Memory {
         for &depth in tried {
             belief.fail(depth);
         }
-        let (expected_s, actions) = belief.best(costs, AHEAD);
+        let curiosity = if tried.is_empty() { CURIOSITY } else { 0.0 };
+        let slack = 1.0 + curiosity * FEW / (FEW + known as f64);
+        let best = belief.best(costs, slack);
+        let is_worth_it = best.is_some_and(|(expected_s, _)| expected_s < costs.give_up_s);
+        let goes_on = is_worth_it || self.tried_out(error, place) < TRIED_OUT_MIN;
+        let best = best.filter(|_| goes_on);
+        let (expected_s, actions) = match best {
+            Some((expected_s, depth)) => (expected_s, Some(depth)),
+            None => (costs.give_up_s, None),
+        };
         let chance = actions.map_or(0.0, |depth| belief.chance(depth));
         Choice { actions, chance, expected_s, known }
     }
 }
 
-/// How likely each depth is the least that is enough, from 1; in the last place, that none is.
-type Shares = [f64; DEPTH_MAX + 1];
+/// A number for each depth, from 1, and in the last place one for what no depth is enough for.
+type Numbers = [f64; DEPTH_MAX + 1];
 
-/// The same with each chance that an attempt helps; all adds up to 1.
+/// What is believed of an incident.
 #[derive(Clone, Debug)]
-struct Belief([Shares; HELPS.len()]);
+struct Belief {
+    /// How likely each depth is the least that is enough; all of them add up to 1.
+    shares: Numbers,
+    /// Of the attempts that went back far enough, how many are believed to have helped, and how
+    /// many not: the chance that one helps is Beta distributed, so that the first that fails says
+    /// little where nothing is known, and much where they nearly always help.
+    helped: Numbers,
+    failed: Numbers,
+}
 
-fn prior() -> Shares {
+fn prior() -> Numbers {
     let mut weights = [PRIOR_FIRST; DEPTH_MAX + 1];
     for depth in 1..DEPTH_MAX {
         weights[depth] = 0.5 * weights[depth - 1];
@@ -148,108 +185,140 @@ fn prior() -> Shares {
     weights
 }
 
-fn normal(mut shares: Shares) -> Shares {
+fn normal(mut shares: Numbers) -> Numbers {
     let whole: f64 = shares.iter().sum();
     shares.iter_mut().for_each(|share| *share /= whole);
     shares
 }
 
-/// How likely it is that an incident came to this, by the depth that is enough.
-fn likelihood(kind: &Kind, helps: f64) -> Shares {
-    std::array::from_fn(|index| {
-        let enough = index + 1;
-        let goes_so_far = |depth: &usize| index < DEPTH_MAX && *depth >= enough;
-        let failed = &kind.depths[..kind.depths.len() - usize::from(kind.is_enough)];
-        let in_vain = failed.iter().filter(|depth| goes_so_far(depth)).count();
-        let last = match (kind.is_enough, kind.depths.last()) {
-            (true, Some(last)) => f64::from(u8::from(goes_so_far(last))) * helps,
-            _ => 1.0,
-        };
-        libm::pow(1.0 - helps, in_vain as f64) * last
-    })
+/// What incidents of a kind say of a depth, if that is the least that is enough: how many attempts
+/// that went so far have failed, and whether one has helped; none if one has helped that did not.
+fn attempts(kind: &Kind, index: usize) -> Option<(f64, f64)> {
+    let goes_so_far = |depth: &&usize| index < DEPTH_MAX && **depth > index;
+    let (last, before) = kind.depths.split_last()?;
+    let failed = if kind.is_enough { before } else { &kind.depths[..] };
+    let helped = match kind.is_enough {
+        true if goes_so_far(&last) => 1.0,
+        true => return None,
+        false => 0.0,
+    };
+    Some((failed.iter().filter(goes_so_far).count() as f64, helped))
 }
 
 impl Belief {
     fn of(times: &BTreeMap<Kind, u64>) -> Self {
-        let explained = HELPS.map(|(helps, weight)| {
-            let (shares, likely) = shares(times, helps);
-            (shares, libm::log(weight) + likely)
-        });
-        let best = explained.iter().map(|(_, likely)| *likely).fold(f64::NEG_INFINITY, f64::max);
-        let mut belief = Self(explained.map(|(shares, likely)| {
-            let weight = libm::exp(likely - best);
-            shares.map(|share| weight * share)
-        }));
-        belief.normalise();
+        let mut belief = Self {
+            shares: normal(prior()),
+            helped: [PRIOR_HELPED; DEPTH_MAX + 1],
+            failed: [PRIOR_FAILED; DEPTH_MAX + 1],
+        };
+        let kinds: Vec<([Option<(f64, f64)>; DEPTH_MAX + 1], f64)> = times
+            .iter()
+            .map(|(kind, times)| {
+                (std::array::from_fn(|index| attempts(kind, index)), *times as f64)
+            })
+            .collect();
+        for _ in 0..ROUNDS {
+            let (mut weights, mut helped) = (prior(), [PRIOR_HELPED; DEPTH_MAX + 1]);
+            let mut failed = [PRIOR_FAILED; DEPTH_MAX + 1];
+            for (attempts, times) in &kinds {
+                let likely = belief.explain(attempts);
+                let whole: f64 = likely.iter().sum();
+                for (index, attempts) in attempts.iter().enumerate() {
+                    let incidents = times * likely[index] / whole;
+                    let (in_vain, enough) = attempts.unwrap_or_default();
+                    weights[index] += incidents;
+                    helped[index] += incidents * enough;
+                    failed[index] += incidents * in_vain;
+                }
+            }
+            belief = Self { shares: normal(weights), helped, failed };
+        }
         belief
     }
 
-    fn normalise(&mut self) {
-        let whole: f64 = self.0.iter().flatten().sum();
-        self.0.iter_mut().flatten().for_each(|share| *share /= whole);
+    /// How likely each depth is the least that is enough and an incident has come to this.
+    fn explain(&self, attempts: &[Option<(f64, f64)>; DEPTH_MAX + 1]) -> Numbers {
+        std::array::from_fn(|index| {
+            let Some((failed, helped)) = attempts[index] else { return 0.0 };
+            let helps = self.helps(index);
+            let likely = if helped > 0.0 { helps } else { 1.0 };
+            self.shares[index] * likely * libm::pow(1.0 - helps, failed)
+        })
+    }
+
+    /// The chance that an attempt helps that goes back far enough.
+    fn helps(&self, index: usize) -> f64 {
+        self.helped[index] / (self.helped[index] + self.failed[index])
     }
 
     /// The chance that an attempt of a depth gets past the error.
     fn chance(&self, depth: usize) -> f64 {
-        let far = |shares: &Shares| shares[..depth.min(DEPTH_MAX)].iter().sum::<f64>();
-        self.0.iter().zip(HELPS).map(|(shares, (helps, _))| helps * far(shares)).sum()
+        (0..depth.min(DEPTH_MAX)).map(|index| self.shares[index] * self.helps(index)).sum()
     }
 
     /// An attempt of a depth has failed.
     fn fail(&mut self, depth: usize) {
-        for (shares, (helps, _)) in self.0.iter_mut().zip(HELPS) {
-            shares[..depth.min(DEPTH_MAX)].iter_mut().for_each(|share| *share *= 1.0 - helps);
+        self.weaken(depth);
+        self.shares = normal(self.shares);
+    }
+
+    /// Take from the shares what an attempt of a depth gets past.
+    fn weaken(&mut self, depth: usize) {
+        for index in 0..depth.min(DEPTH_MAX) {
+            self.shares[index] *= 1.0 - self.helps(index);
+            self.failed[index] += 1.0;
         }
-        self.normalise();
     }
 
     /// The least expected time to be past the error, and the depth to try first for it; none where
-    /// giving up costs less.
-    fn best(&self, costs: Costs<'_>, ahead: usize) -> (f64, Option<usize>) {
-        let mut best = (costs.give_up_s, None);
-        if ahead == 0 {
-            return best;
-        }
-        for (index, &cost_s) in costs.by_depth_s.iter().enumerate().take(DEPTH_MAX) {
-            // What is deeper takes longer.
-            if cost_s >= best.0 {
-                break;
+    /// there is none. Of those that take hardly longer (by a factor) it is the nearest, from which
+    /// most is learned.
+    fn best(&self, costs: Costs<'_>, slack: f64) -> Option<(f64, usize)> {
+        let depths = 1..=costs.by_depth_s.len().min(DEPTH_MAX);
+        let times_s: Vec<f64> = depths.map(|first| self.expected_s(first, costs)).collect();
+        let least_s = times_s.iter().copied().fold(f64::INFINITY, f64::min);
+        let is_it = |time_s: &f64| time_s.is_finite() && *time_s <= least_s * slack;
+        let index = times_s.iter().position(is_it)?;
+        Some((times_s[index], index + 1))
+    }
+
+    /// The least expected time to be past the error, if a depth is tried first. All that is learned
+    /// on the way is that attempts have failed, so that what to do can be planned at once: a depth
+    /// some times, and then another as often as may be.
+    fn expected_s(&self, first: usize, costs: Costs<'_>) -> f64 {
+        let mut course = Course { belief: self.clone(), spent_s: 0.0 };
+        let mut least_s = f64::INFINITY;
+        for left in (0..costs.attempts_left).rev() {
+            least_s = least_s.min(course.attempt(first, costs));
+            for then in (1..=costs.by_depth_s.len().min(DEPTH_MAX)).filter(|then| *then != first) {
+                least_s = least_s.min(course.clone().go_on(then, left, costs));
             }
-            let depth = index + 1;
-            let mut after = self.clone();
-            after.fail(depth);
-            let (then_s, _) = after.best(costs, ahead - 1);
-            let expected_s = cost_s + (1.0 - self.chance(depth)) * then_s;
-            if expected_s < best.0 {
-                best = (expected_s, Some(depth));
-            }
         }
-        best
+        least_s
     }
 }
 
-/// What the counts say of the depths if an attempt that goes back far enough helps with a chance,
-/// and the logarithm of how likely the counts then are.
-fn shares(times: &BTreeMap<Kind, u64>, helps: f64) -> (Shares, f64) {
-    let kinds: Vec<(Shares, f64)> =
-        times.iter().map(|(kind, times)| (likelihood(kind, helps), *times as f64)).collect();
-    let mut present = normal(prior());
-    for _ in 0..ROUNDS {
-        let mut weights = prior();
-        for (likely, times) in &kinds {
-            let whole = product(&present, likely);
-            for ((weight, share), likely) in weights.iter_mut().zip(present).zip(likely) {
-                *weight += times * share * likely / whole;
-            }
-        }
-        present = normal(weights);
-    }
-    let likely = kinds.iter().map(|(likely, times)| times * libm::log(product(&present, likely)));
-    (present, likely.sum())
+/// A plan that is being followed in thought; the shares are what is left of them.
+#[derive(Clone)]
+struct Course {
+    belief: Belief,
+    spent_s: f64,
 }
 
-fn product(shares: &Shares, likely: &Shares) -> f64 {
-    shares.iter().zip(likely).map(|(share, likely)| share * likely).sum()
+impl Course {
+    /// One attempt more. The expected time if it is given up after that, in seconds.
+    fn attempt(&mut self, depth: usize, costs: Costs<'_>) -> f64 {
+        let open: f64 = self.belief.shares.iter().sum();
+        self.spent_s += open * costs.by_depth_s[depth - 1];
+        self.belief.weaken(depth);
+        self.spent_s + self.belief.shares.iter().sum::<f64>() * costs.give_up_s
+    }
+
+    /// The same depth up to so often. The expected time if it is given up where that is best.
+    fn go_on(mut self, depth: usize, times: u32, costs: Costs<'_>) -> f64 {
+        (0..times).map(|_| self.attempt(depth, costs)).fold(f64::INFINITY, f64::min)
+    }
 }
 
 /// The text of a memory.
@@ -411,7 +480,7 @@ mod tests {
     const COSTS_S: [f64; 6] = [2.0, 4.0, 8.0, 12.0, 20.0, 30.0];
 
     fn choose(memory: &mut Memory, tried: &[usize]) -> Choice {
-        let costs = Costs { by_depth_s: &COSTS_S, give_up_s: 300.0 };
+        let costs = Costs { by_depth_s: &COSTS_S, give_up_s: 300.0, attempts_left: 8 };
         memory.choose("jam", "here", tried, costs)
     }
 
@@ -419,13 +488,23 @@ mod tests {
     fn who_knows_nothing_begins_near_goes_further_and_gives_up_only_at_the_end() {
         let mut memory = Memory::default();
         let mut tried = Vec::new();
-        while let Some(actions) = choose(&mut memory, &tried).actions {
-            tried.push(actions);
-            assert!(tried.len() < 40, "{tried:?}");
+        for attempts_left in (1..=12).rev() {
+            let costs = Costs { by_depth_s: &COSTS_S, give_up_s: 300.0, attempts_left };
+            tried.push(memory.choose("jam", "here", &tried, costs).actions.unwrap());
         }
-        assert!(tried[0] <= 2, "{tried:?}");
+        assert_eq!(tried[0], 1, "{tried:?}");
         assert_eq!(tried.iter().max(), Some(&COSTS_S.len()), "{tried:?}");
-        assert!(tried.len() >= 4, "{tried:?}");
+        let costs = Costs { by_depth_s: &COSTS_S, give_up_s: 300.0, attempts_left: 0 };
+        assert_eq!(memory.choose("jam", "here", &tried, costs).actions, None);
+    }
+
+    #[test]
+    fn who_has_given_up_early_has_not_learned_that_it_is_in_vain() {
+        let mut memory = Memory::default();
+        for _ in 0..100 {
+            memory.learn("jam", "here", &[1, 3], false);
+        }
+        assert!(choose(&mut memory, &[1, 3]).actions.is_some());
     }
 
     #[test]
@@ -436,7 +515,7 @@ mod tests {
         }
         assert_eq!(choose(&mut memory, &[]).actions, Some(4));
         // Elsewhere, and for another error, nothing is known.
-        let costs = Costs { by_depth_s: &COSTS_S, give_up_s: 300.0 };
+        let costs = Costs { by_depth_s: &COSTS_S, give_up_s: 300.0, attempts_left: 8 };
         assert!(memory.choose("jam", "there", &[], costs).actions.unwrap() <= 2);
     }
 
@@ -446,7 +525,7 @@ mod tests {
         for _ in 0..50 {
             memory.learn("jam", "here", &[1, 2, 4, 6], false);
         }
-        let costs = Costs { by_depth_s: &COSTS_S, give_up_s: 60.0 };
+        let costs = Costs { by_depth_s: &COSTS_S, give_up_s: 60.0, attempts_left: 8 };
         assert_eq!(memory.choose("jam", "here", &[], costs).actions, None);
     }
 
@@ -461,6 +540,22 @@ mod tests {
         assert_eq!(first.actions, Some(1));
         assert!((0.3..0.6).contains(&first.chance), "{}", first.chance);
         assert_eq!(choose(&mut memory, &[1]).actions, Some(5));
+    }
+
+    #[test]
+    fn a_search_near_goes_on_as_long_as_it_is_worth_it_and_then_what_is_far_is_done_anew() {
+        // Half need the third point of a search, half what only four actions back does anew.
+        let mut memory = Memory::default();
+        for _ in 0..40 {
+            memory.learn("jam", "here", &[1, 1, 1], true);
+            memory.learn("jam", "here", &[1, 1, 1, 1, 4], true);
+        }
+        let mut tried = Vec::new();
+        for _ in 0..6 {
+            tried.push(choose(&mut memory, &tried).actions.unwrap());
+        }
+        assert_eq!(tried[..2], [1, 1], "{tried:?}");
+        assert!(tried.contains(&4), "{tried:?}");
     }
 
     #[test]

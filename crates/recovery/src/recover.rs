@@ -4,14 +4,14 @@ use crate::change;
 use crate::depth::{Policy, Question};
 use crate::drive;
 use crate::ending::{Ending, GiveUp};
+use crate::fault;
 use crate::incident::{Attempt, Incident, Outcome};
 use crate::memory::Memory;
+use crate::place::place;
 use crate::strategy::{Bounds, Strategy};
 use crate::tell::{Operator, Step, Teller, Why};
-use crate::trail::{Action, Trail};
-use obverse_bytecode::{
-    Depth, ErrorDeclaration, FaultName, Module, Recovery as Declared, Reversal,
-};
+use crate::trail::Trail;
+use obverse_bytecode::{Depth, ErrorDeclaration, Module, Recovery as Declared, Reversal};
 use obverse_geometry::{Axis, Frame};
 use obverse_isa::ErrorId;
 use obverse_vm::{Alteration, Direction, Event, Limits, Machine, Mark, Observer, Stop};
@@ -54,8 +54,28 @@ pub struct Site<'s, 'p, C> {
     pub trail: &'s Trail<'p>,
     /// The error and what has been tried.
     pub incident: &'s Incident,
-    /// What will be done otherwise on the way forward again, by attempt that is left.
-    pub changes: Vec<Option<Alteration>>,
+    /// How many attempts are left.
+    pub attempts_left: u32,
+    policy: Option<&'p Reversal>,
+    seed: u64,
+}
+
+impl<C> Site<'_, '_, C> {
+    /// What will be done otherwise at each attempt that is left, if each goes back so many actions.
+    #[must_use]
+    pub fn changes(&self, actions: usize) -> Vec<Option<Alteration>> {
+        let mut incident = self.incident.clone();
+        let attempts = 0..self.attempts_left;
+        let one = attempts.map(|_| {
+            let search = incident.next_search(self.trail, actions);
+            let change = self.policy.and_then(|policy| {
+                change::of_incident(policy, &incident, self.trail, search, self.seed)
+            });
+            incident.attempts.push(Attempt { actions, began_s: self.incident.began_s, search });
+            change
+        });
+        one.collect()
+    }
 }
 
 /// Who sees the world as it is, and knows what will come of going back.
@@ -185,11 +205,12 @@ impl<'p, C: Workcell> Run<'_, 'p, '_, C> {
     /// A fault that the program names becomes an error of it.
     fn fault(&mut self, fault: Fault, pc: u32) -> Option<Ending> {
         let direction = Direction::Forward;
-        let error = error_of(self.module(), &fault);
+        let error = fault::error_of(self.module(), &fault);
         let raised = error.filter(|error| {
             let step = Step::Fault { fault: &fault, pc, error: *error };
             self.teller.on_step(&step, self.cell);
-            self.may_move(&fault) && self.machine.raise(*error, self.cell)
+            self.may_move(&fault)
+                && fault::raise(self.machine, *error, pc, self.cell, &mut self.trail)
         });
         if raised.is_some() { None } else { Some(Ending::Fault { fault, pc, direction }) }
     }
@@ -251,7 +272,7 @@ impl<'p, C: Workcell> Run<'_, 'p, '_, C> {
         self.check_progress(index)?;
         let incident = &self.open[index];
         self.check_bounds(incident)?;
-        let policy = reversal(self.declared(incident)).copied();
+        let policy = reversal(self.declared(incident));
         let times = incident.attempts.len() as u32;
         let within = |most: u32| if times < most { Ok(()) } else { Err(GiveUp::Attempts(most)) };
         let asked = match self.recovery.strategy {
@@ -269,7 +290,7 @@ impl<'p, C: Workcell> Run<'_, 'p, '_, C> {
                 return Ok(Plan::Restart);
             }
             Strategy::Oracle => return self.foresee(index),
-            Strategy::Declared => Policy::of(policy.as_ref().ok_or(GiveUp::Strategy)?),
+            Strategy::Declared => Policy::of(policy.ok_or(GiveUp::Strategy)?),
             Strategy::Fixed { actions } => {
                 let most = u32::try_from(actions).unwrap_or(u32::MAX);
                 Policy { depth: Depth::Fixed, extent: obverse_bytecode::Extent::Actions(most) }
@@ -285,6 +306,7 @@ impl<'p, C: Workcell> Run<'_, 'p, '_, C> {
             now_s: self.cell.now_s(),
             joints: self.cell.joints(),
             give_up_s: self.recovery.person_s,
+            attempts_left: self.attempts_left(incident),
         };
         let (actions, why) = question.answer(asked, self.recovery.memory)?;
         Ok(Plan::Back { actions, why })
@@ -292,15 +314,14 @@ impl<'p, C: Workcell> Run<'_, 'p, '_, C> {
 
     fn foresee(&mut self, index: usize) -> Result<Plan, GiveUp> {
         let incident = &self.open[index];
-        let made = incident.attempts.len() as u32;
-        let attempts = made + 1..=self.bounds(incident).attempts;
-        let changes = attempts.map(|attempt| self.change(incident, attempt)).collect();
         let site = Site {
             machine: self.machine,
             cell: &*self.cell,
             trail: &self.trail,
             incident,
-            changes,
+            attempts_left: self.attempts_left(incident),
+            policy: reversal(self.declared(incident)),
+            seed: self.recovery.seed,
         };
         let foresight = self.recovery.foresight.as_mut().ok_or(GiveUp::Strategy)?;
         let actions = foresight.depth(&site).ok_or(GiveUp::WouldNotHelp)?;
@@ -337,6 +358,10 @@ impl<'p, C: Workcell> Run<'_, 'p, '_, C> {
         }
     }
 
+    fn attempts_left(&self, incident: &Incident) -> u32 {
+        self.bounds(incident).attempts.saturating_sub(incident.attempts.len() as u32)
+    }
+
     /// What may be spent on an incident.
     fn bounds(&self, incident: &Incident) -> Bounds {
         let said = self.declared(incident).bounds;
@@ -352,23 +377,15 @@ impl<'p, C: Workcell> Run<'_, 'p, '_, C> {
         &self.module().errors[incident.error.index()]
     }
 
-    /// What an attempt, counted from 1, does otherwise.
-    fn change(&self, incident: &Incident, attempt: u32) -> Option<Alteration> {
-        let motion = self.trail.actions().last().and_then(Action::motion);
-        let policy = reversal(self.declared(incident))?;
-        let reverses = !matches!(
-            self.recovery.strategy,
-            Strategy::Retry { .. } | Strategy::BackUp { .. } | Strategy::Restart { .. }
-        );
-        let seed = self.recovery.seed ^ incident.number;
-        if reverses { change::of_attempt(policy, attempt, motion, seed) } else { None }
-    }
-
     fn carry_out(&mut self, index: usize, plan: Plan) -> Result<(), GiveUp> {
         let incident = &self.open[index];
-        let change = self.change(incident, incident.attempts.len() as u32 + 1);
         let began_s = self.cell.now_s();
         let actions = if let Plan::Back { actions, .. } = plan { actions } else { 0 };
+        let search = incident.next_search(&self.trail, actions);
+        let policy = reversal(self.declared(incident)).filter(|_| actions > 0);
+        let seed = self.recovery.seed;
+        let change = policy
+            .and_then(|policy| change::of_incident(policy, incident, &self.trail, search, seed));
         match plan {
             Plan::Back { actions, why } => self.back(index, actions, why)?,
             Plan::InPlace { backed_up_m } => self.in_place(index, backed_up_m)?,
@@ -376,7 +393,7 @@ impl<'p, C: Workcell> Run<'_, 'p, '_, C> {
         }
         self.machine.alter(change);
         self.attempts += 1;
-        self.open[index].attempts.push(Attempt { actions, began_s });
+        self.open[index].attempts.push(Attempt { actions, began_s, search });
         let step = Step::Again { incident: &self.open[index], change };
         self.teller.on_step(&step, self.cell);
         Ok(())
@@ -391,7 +408,7 @@ impl<'p, C: Workcell> Run<'_, 'p, '_, C> {
         let (mark, pc) = (to.steps, to.pc);
         let incident = &self.open[index];
         self.teller.on_step(&Step::Back { incident, actions, to: pc, why }, self.cell);
-        self.pass_round_trip(index)?;
+        self.pass_round_trip(index, mark)?;
         let mut tries = 0;
         loop {
             let mut watch = Watch { trail: &mut self.trail, teller: &mut *self.teller };
@@ -416,14 +433,13 @@ impl<'p, C: Workcell> Run<'_, 'p, '_, C> {
         }
     }
 
-    /// An action that ended where it began is taken back in the program alone: going there again
-    /// and back would press anew on what had stopped it, for nothing.
-    fn pass_round_trip(&mut self, index: usize) -> Result<(), GiveUp> {
-        let newest = self.trail.actions().last();
-        let Some(action) = newest.filter(|it| it.is_round_trip(&self.cell.joints())) else {
+    /// Motions that ended where they began are taken back in the program alone: going there again
+    /// and back would press anew on what had stopped them, for nothing.
+    fn pass_round_trip(&mut self, index: usize, since: u64) -> Result<(), GiveUp> {
+        let Some(motion) = self.trail.round_trip(since, &self.cell.joints()) else {
             return Ok(());
         };
-        let (steps, pc) = (action.steps, action.pc);
+        let (steps, pc) = (motion.steps, motion.pc);
         let step = Step::RoundTrip { incident: &self.open[index], pc };
         self.teller.on_step(&step, self.cell);
         self.unwind(steps)
@@ -537,44 +553,9 @@ impl<'p, C: Workcell> Run<'_, 'p, '_, C> {
     }
 }
 
-/// The error that a program says a fault is.
-fn error_of(module: &Module, fault: &Fault) -> Option<ErrorId> {
-    let name = FaultName::from_code(fault.kind().code())?;
-    let index = module.errors.iter().position(|error| error.faults.contains(&name))?;
-    u16::try_from(index).ok().map(ErrorId)
-}
-
 fn reversal(error: &ErrorDeclaration) -> Option<&Reversal> {
     match &error.recovery {
         Declared::Reversing(reversal) => Some(reversal),
         _ => None,
-    }
-}
-
-/// The place of an instruction in words that stay the same when lines are added: the function, what
-/// it says there, and which of those in it that say the same.
-fn place(module: &Module, pc: u32) -> String {
-    let function = module.function_at(pc).map(|index| &module.functions[index]);
-    let name = function.map_or("", |function| &function.name);
-    let Some(entry) = module.source_at(pc) else { return name.to_owned() };
-    let text = |entry: &obverse_bytecode::SourceEntry| {
-        let file = module.sources.get(usize::from(entry.file))?;
-        let text = file.text.get(entry.start as usize..entry.end as usize)?;
-        let words: Vec<&str> = text.lines().next()?.split_whitespace().collect();
-        Some(words.join(" "))
-    };
-    let said = text(entry).unwrap_or_default();
-    let first = function.map_or(0, |function| function.first);
-    let before: std::collections::BTreeSet<(u16, u32)> = module
-        .source_map
-        .iter()
-        .filter(|other| (first..entry.first).contains(&other.first) && other.action.is_some())
-        .filter(|other| (other.file, other.start) != (entry.file, entry.start))
-        .filter(|other| text(other).as_deref() == Some(&said))
-        .map(|other| (other.file, other.start))
-        .collect();
-    match before.len() {
-        0 => format!("{name}: {said}"),
-        count => format!("{name}: {said} ({})", count + 1),
     }
 }

@@ -55,11 +55,11 @@ pub enum Step<'a> {
         /// Why so far.
         why: Why,
     },
-    /// An action ended where it began: the arm has nothing to take back of it.
+    /// The arm is where a motion began: of what came since it has nothing to take back.
     RoundTrip {
         /// The error and what was tried before.
         incident: &'a Incident,
-        /// The action, by its first instruction.
+        /// The motion.
         pc: u32,
     },
     /// The arm stays, and the program alone goes back.

@@ -6,9 +6,17 @@
 
 use obverse_bytecode::{ActionKind, FunctionKind, Module};
 use obverse_geometry::JointConfiguration;
-use obverse_isa::{CheckpointId, Class, FunctionId, Instr};
+use obverse_isa::{CheckpointId, Class, Family, FunctionId, Instr};
 use obverse_vm::{Direction, Event};
 use obverse_workcell::Workcell;
+use std::collections::VecDeque;
+
+/// The arm is where it was if no joint is farther away than this, in radians: a micrometre at the
+/// tool.
+const SAME_PLACE_RAD: f64 = 1e-6;
+
+/// How many motions are looked back on for one that began where the arm is.
+const MOTIONS_MAX: usize = 64;
 
 /// An action that was begun.
 #[derive(Clone, Debug, PartialEq)]
@@ -19,8 +27,6 @@ pub struct Action {
     pub pc: u32,
     /// When it began, in seconds of the workcell's clock.
     pub began_s: f64,
-    /// Where the arm was when it began.
-    pub joints: JointConfiguration,
     /// Whether nothing but motions of the arm has been commanded in it, outside of blocks with a
     /// reverse of their own.
     pub only_moves: bool,
@@ -42,6 +48,11 @@ pub struct Action {
     motion: Option<(u32, bool)>,
 }
 
+/// Whether it is a motion of the arm; one that a fault has ended has no report.
+fn is_motion(event: &Event) -> bool {
+    event.instr.info().family == Family::Kinematic
+}
+
 impl Action {
     /// The motion that it is about: the last that a force was to stop, or the last of all.
     #[must_use]
@@ -49,23 +60,29 @@ impl Action {
         self.motion.map(|(pc, _)| pc)
     }
 
-    /// Whether it has led the arm back to where it began, so that in the world there is nothing to
-    /// take back.
-    #[must_use]
-    pub fn is_round_trip(&self, now: &JointConfiguration) -> bool {
-        self.only_moves && self.motion.is_some() && self.joints.same_bits(now)
-    }
-
     fn note_act(&mut self, event: &Event) {
-        let is_motion = event.report.is_some();
+        let is_motion = is_motion(event);
         let acts = event.instr.info().family.commands_workcell();
         self.only_moves &= event.open_blocks == 0 && (is_motion || !acts);
         let is_guarded = event.instr.is_guarded();
         let was_guarded = self.motion.is_some_and(|(_, is_guarded)| is_guarded);
-        if event.report.is_some() && (is_guarded || !was_guarded) {
+        if is_motion && (is_guarded || !was_guarded) {
             self.motion = Some((event.pc, is_guarded));
         }
     }
+}
+
+/// A motion that was begun, with nothing but motions since.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Begun {
+    /// How many instructions lay before it.
+    pub(crate) steps: u64,
+    /// Its instruction.
+    pub(crate) pc: u32,
+    /// When it began, in seconds of the workcell's clock.
+    pub(crate) began_s: f64,
+    /// Where the arm was.
+    joints: JointConfiguration,
 }
 
 /// Something on the way other than an action.
@@ -85,6 +102,8 @@ pub struct Trail<'m> {
     module: &'m Module,
     actions: Vec<Action>,
     posts: Vec<(u64, Post)>,
+    /// The motions since anything else was commanded, the newest last.
+    motions: VecDeque<Begun>,
     /// How many actions of the run are no longer on the trail.
     dropped: u64,
     never: Option<u32>,
@@ -105,6 +124,7 @@ impl<'m> Trail<'m> {
             module,
             actions: Vec::new(),
             posts: Vec::new(),
+            motions: VecDeque::new(),
             dropped: 0,
             never: None,
             now_s: 0.0,
@@ -138,6 +158,21 @@ impl<'m> Trail<'m> {
     #[must_use]
     pub fn never(&self) -> Option<u32> {
         self.never
+    }
+
+    /// Whether going back so many actions takes back more than motions of the arm, so that what is
+    /// held, and how, is done anew on the way forward again.
+    #[must_use]
+    pub fn takes_back_more_than_moves(&self, actions: usize) -> bool {
+        self.actions.iter().rev().take(actions).any(|action| !action.only_moves)
+    }
+
+    /// The first motion since so many instructions that began where the arm is now, with nothing
+    /// but motions since: all that came of them in the world is undone already.
+    pub(crate) fn round_trip(&self, since: u64, now: &JointConfiguration) -> Option<&Begun> {
+        self.motions.iter().find(|motion| {
+            motion.steps >= since && motion.joints.largest_difference_rad(now) < SAME_PLACE_RAD
+        })
     }
 
     /// How far the arm has gone, in either direction, in metres.
@@ -188,10 +223,12 @@ impl<'m> Trail<'m> {
             self.dropped += self.actions.len() as u64;
             self.actions.clear();
             self.posts.clear();
+            self.motions.clear();
             self.never = Some(event.pc);
             return;
         }
         let began = event.steps.saturating_sub(1 + u64::from(event.instr.prefix()));
+        self.note_motion(event, began);
         match event.instr {
             Instr::Checkpoint { checkpoint } => {
                 self.posts.push((began, Post::Checkpoint(checkpoint)));
@@ -204,6 +241,20 @@ impl<'m> Trail<'m> {
             }
             _ => self.act(event, began),
         }
+    }
+
+    fn note_motion(&mut self, event: &Event, steps: u64) {
+        if !event.instr.info().family.commands_workcell() {
+            return;
+        }
+        if event.open_blocks > 0 || !is_motion(event) {
+            return self.motions.clear();
+        }
+        if self.motions.len() == MOTIONS_MAX {
+            self.motions.pop_front();
+        }
+        let (began_s, joints) = (self.now_s, self.joints);
+        self.motions.push_back(Begun { steps, pc: event.pc, began_s, joints });
     }
 
     fn is_transparent(&self, function: FunctionId) -> bool {
@@ -233,7 +284,6 @@ impl<'m> Trail<'m> {
                 steps: began,
                 pc: event.pc,
                 began_s: self.now_s,
-                joints: self.joints,
                 only_moves: true,
                 number: self.count(),
                 entry: entry.first,
@@ -266,6 +316,7 @@ impl<'m> Trail<'m> {
         for action in &mut self.actions {
             action.ended = action.ended.filter(|ended| *ended <= steps);
         }
+        self.motions.retain(|motion| motion.steps < steps);
         let left = self.posts.partition_point(|(at, _)| *at < steps);
         self.posts.truncate(left);
     }

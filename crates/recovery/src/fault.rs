@@ -1,0 +1,42 @@
+//! A fault of the workcell that becomes an error of the program.
+
+use crate::trail::Trail;
+use obverse_bytecode::{FaultName, Module};
+use obverse_isa::ErrorId;
+use obverse_vm::{Direction, Event, Machine};
+use obverse_workcell::{Fault, Workcell};
+
+/// The error that a program says a fault is.
+pub(crate) fn error_of(module: &Module, fault: &Fault) -> Option<ErrorId> {
+    let name = FaultName::from_code(fault.kind().code())?;
+    let index = module.errors.iter().position(|error| error.faults.contains(&name))?;
+    u16::try_from(index).ok().map(ErrorId)
+}
+
+/// Let the fault that stopped the act at an instruction be an error of the program. Whether it could
+/// be. The machine does not tell of an act that a fault has ended; it is an action all the same.
+pub(crate) fn raise(
+    machine: &mut Machine<'_>,
+    error: ErrorId,
+    pc: u32,
+    cell: &mut dyn Workcell,
+    trail: &mut Trail<'_>,
+) -> bool {
+    let is_raised = machine.raise(error, cell);
+    let instr = machine.program().module().code.get(pc as usize);
+    if let Some(instr) = instr.filter(|_| is_raised) {
+        let state = machine.state();
+        let event = Event {
+            direction: Direction::Forward,
+            pc,
+            instr: *instr,
+            report: None,
+            steps: state.steps(),
+            open_blocks: state.open_blocks(),
+            frames: state.frames().len(),
+            branches: state.branches(),
+        };
+        trail.note(&event, cell);
+    }
+    is_raised
+}
