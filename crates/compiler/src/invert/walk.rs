@@ -29,7 +29,9 @@ pub(super) fn each_in<'a, 's>(block: &'a Block<'s>, visit: &mut impl FnMut(&'a S
 pub(super) fn expressions<'a, 's>(statement: &'a Statement<'s>) -> Vec<&'a Expression<'s>> {
     match &statement.kind {
         StatementKind::Move { target: Target::Relative { distance, .. }, .. } => vec![distance],
-        StatementKind::Call { arguments, .. } => arguments.iter().collect(),
+        StatementKind::Call { arguments, .. } => {
+            arguments.iter().map(|argument| &argument.value).collect()
+        }
         StatementKind::Wait(value)
         | StatementKind::WaitUntil { timeout: value, .. }
         | StatementKind::Primitive(Primitive::Sleep { duration: value, .. })

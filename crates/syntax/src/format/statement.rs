@@ -3,7 +3,7 @@
 use super::piece::{Column, Glue};
 use super::writer::{Style, Writer};
 use crate::ast::{
-    AssignOperator, Block, Expression, FrameWord, Heading, Primitive, ReverseParameter, Signal,
+    Argument, AssignOperator, Block, Expression, FrameWord, Heading, Primitive, ReverseParameter, Signal,
     SpeedWord, Statement, StatementKind, Target, VariableDeclaration,
 };
 use crate::span::{Span, Spanned};
@@ -25,6 +25,15 @@ impl<'s> Writer<'s> {
         self.braces(&block.statements, style, Self::statement);
     }
 
+    /// `depth: 12 mm`, or the value alone.
+    fn argument(&mut self, argument: &Argument<'s>) {
+        if let Some(name) = argument.name {
+            self.text(name.value);
+            self.tight(":");
+        }
+        self.expression(&argument.value);
+    }
+
     fn statement(&mut self, statement: &Statement<'s>) {
         match &statement.kind {
             StatementKind::Move { target, linear, always } => {
@@ -34,7 +43,8 @@ impl<'s> Writer<'s> {
             StatementKind::Call { name, arguments } => {
                 self.named("call", name.value);
                 if !arguments.is_empty() || self.is_next("(") {
-                    self.arguments(arguments);
+                    self.glue(Glue::Tight);
+                    self.list(["(", ")"], arguments, Self::argument);
                 }
             }
             StatementKind::Io(name) => self.named("io", name.value),
