@@ -32,14 +32,14 @@ fn mistakes_of_declarations() {
     check(
         "action a(x: length in 5 mm to 60 mm = 61 mm, y: int in 9 to 3, z: bool in 1 to 2,\n\
          u: length = 3 s, v: force in 1 N to w = 2 N, w: int in 1 to 2 = 2) {\n\
-         if z { wait 1 s } repeat y + w times { move x + u up } wait v / 1 N * 1 s }\n\
+         if z { wait 1 s } repeat y + w times { move x up move u up } wait v / 1 N * 1 s }\n\
          sequence main { call a(z: true, y: 4) }",
         &[
             r#"E0212 1:39 "61 mm""#,
             r#"E0210 1:56 "9 to 3""#,
             r#"E0201 1:75 "1 to 2""#,
             r#"E0202 2:13 "3 s""#,
-            r#"E0101 2:38 "w""#,
+            r#"E0101 2:37 "w""#,
         ],
     );
 }
