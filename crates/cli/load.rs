@@ -5,7 +5,7 @@ use crate::problem::{Diagnosed, Message, Problem};
 use crate::{lacking, show};
 use obverse_bytecode::codec::MODULE;
 use obverse_bytecode::{Mentioned, Module, Verified, assemble, decode, verify};
-use obverse_compiler::{Compiled, compile_files};
+use obverse_compiler::{Action, Compiled, Defaults, compile_with, library};
 use obverse_sim::{Cell, Sim};
 use obverse_syntax::sources::Sources;
 use obverse_vm::Machine;
@@ -25,7 +25,7 @@ impl Program {
     /// A source file of the program as people find it.
     pub(crate) fn path_of(&self, file: &str) -> PathBuf {
         match &self.source {
-            Some(diagnosed) => diagnosed.folder.join(file),
+            Some(diagnosed) => diagnosed.path_of(file),
             None => PathBuf::from(file),
         }
     }
@@ -33,7 +33,9 @@ impl Program {
     /// Every file that was read for the program.
     pub(crate) fn files(&self) -> Vec<PathBuf> {
         let sources = self.source.iter().flat_map(|diagnosed| {
-            (1..diagnosed.sources.len()).map(|file| PathBuf::from(diagnosed.name(file)))
+            let names = (1..diagnosed.sources.len()).map(|file| diagnosed.sources.name(file));
+            let on_disk = names.filter(|name| !name.starts_with(library::PREFIX));
+            on_disk.map(|name| diagnosed.path_of(name))
         });
         std::iter::once(self.path.clone()).chain(sources).collect()
     }
@@ -65,6 +67,17 @@ pub(crate) fn require_source(path: &Path, treated: &str) -> Result<(), Problem> 
 /// The module of a file, not verified, with the source text and its warnings, if there is one. It
 /// is a module by its first bytes, assembly text by its name (`.obvasm`), and source otherwise.
 pub(crate) fn module(path: &Path) -> Result<(Module, Option<Diagnosed>), Problem> {
+    module_with(path, &[])
+}
+
+/// The same with the values of parameter files in the place of defaults.
+fn module_with(
+    path: &Path,
+    parameters: &[PathBuf],
+) -> Result<(Module, Option<Diagnosed>), Problem> {
+    if !parameters.is_empty() {
+        require_source(path, "given parameters")?;
+    }
     let raw = bytes(path)?;
     let extension = path.extension().and_then(|extension| extension.to_str()).unwrap_or("");
     if extension == "tape" {
@@ -80,11 +93,29 @@ pub(crate) fn module(path: &Path) -> Result<(Module, Option<Diagnosed>), Problem
         "toml" => {
             Err(Problem::of_file(path, "this is a workcell; name the program that runs in it"))
         }
-        _ => compiled(path, &raw).map(|(module, diagnosed)| (module, Some(diagnosed))),
+        _ => {
+            let (mut module, mut diagnosed, actions) = compiled(path, &raw, &Defaults::new())?;
+            if !parameters.is_empty() {
+                let name = path.file_name().unwrap_or_default().to_string_lossy();
+                let defaults = crate::parameters::defaults(parameters, &name, &actions)?;
+                (module, diagnosed, _) = compiled(path, &raw, &defaults)?;
+            }
+            Ok((module, Some(diagnosed)))
+        }
     }
 }
 
-fn compiled(path: &Path, raw: &[u8]) -> Result<(Module, Diagnosed), Problem> {
+/// The program of a source text and its actions, with other values in the place of defaults.
+pub(crate) fn source(path: &Path, defaults: &Defaults) -> Result<(Program, Vec<Action>), Problem> {
+    let (module, diagnosed, actions) = compiled(path, &bytes(path)?, defaults)?;
+    Ok((verified(path, module, Some(diagnosed))?, actions))
+}
+
+fn compiled(
+    path: &Path,
+    raw: &[u8],
+    defaults: &Defaults,
+) -> Result<(Module, Diagnosed, Vec<Action>), Problem> {
     // The module carries the file's name alone: the same source gives the same bytes anywhere.
     let name = path.file_name().unwrap_or(path.as_os_str()).to_string_lossy().into_owned();
     let folder = path.with_file_name("");
@@ -95,11 +126,11 @@ fn compiled(path: &Path, raw: &[u8]) -> Result<(Module, Diagnosed), Problem> {
             return Err(Problem::in_source(Diagnosed { folder, sources, diagnostics }));
         }
     };
-    let compiled = compile_files(&name, text, &mut ProgramFolder::of(path));
-    let Compiled { module, diagnostics, sources } = compiled;
+    let compiled = compile_with(&name, text, &mut ProgramFolder::of(path), defaults);
+    let Compiled { module, diagnostics, actions, sources } = compiled;
     let diagnosed = Diagnosed { folder, sources, diagnostics };
     match module {
-        Some(module) => Ok((module, diagnosed)),
+        Some(module) => Ok((module, diagnosed, actions)),
         None => Err(Problem::in_source(diagnosed)),
     }
 }
@@ -118,7 +149,13 @@ fn assembled(path: &Path, raw: &[u8]) -> Result<Module, Problem> {
 
 /// The program of a file, verified. Its warnings are shown.
 pub(crate) fn program(path: &Path) -> Result<Program, Problem> {
-    let program = quietly(path)?;
+    program_with(path, &[])
+}
+
+/// The same with the values of parameter files in the place of defaults.
+pub(crate) fn program_with(path: &Path, parameters: &[PathBuf]) -> Result<Program, Problem> {
+    let (module, source) = module_with(path, parameters)?;
+    let program = verified(path, module, source)?;
     if let Some(diagnosed) = &program.source {
         show::diagnostics(diagnosed);
     }
@@ -128,6 +165,10 @@ pub(crate) fn program(path: &Path) -> Result<Program, Problem> {
 /// The program of a file, verified.
 pub(crate) fn quietly(path: &Path) -> Result<Program, Problem> {
     let (module, source) = module(path)?;
+    verified(path, module, source)
+}
+
+fn verified(path: &Path, module: Module, source: Option<Diagnosed>) -> Result<Program, Problem> {
     let verified = verify(module).map_err(|errors| {
         Problem::several(errors.iter().map(|error| Message::of_file(path, error)).collect())
     })?;

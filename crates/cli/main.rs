@@ -10,6 +10,7 @@ mod files;
 mod lacking;
 mod load;
 mod moves;
+mod parameters;
 mod problem;
 mod recovering;
 mod report;
@@ -60,6 +61,8 @@ enum Command {
     Dis(commands::dis::Arguments),
     /// Try a program over many seeded assemblies, by one strategy or several.
     Trials(commands::trials::Arguments),
+    /// Learn the parameters of an action in simulation.
+    Learn(commands::learn::Arguments),
     /// Show what is on a recorded tape.
     Tape(commands::tape::Arguments),
     /// Show the instruction set.
@@ -80,6 +83,7 @@ impl Command {
             Self::Dis(arguments) => arguments.json,
             Self::Reach(arguments) => arguments.json,
             Self::Trials(arguments) => arguments.json,
+            Self::Learn(arguments) => arguments.json,
             Self::Tape(arguments) => arguments.json,
             Self::Explain(arguments) => arguments.json,
             Self::Check(_) | Self::Isa(_) => false,
@@ -111,6 +115,7 @@ fn main() -> ExitCode {
         Command::Reach(arguments) => commands::reach::run(&arguments),
         Command::Dis(arguments) => commands::dis::run(&arguments),
         Command::Trials(arguments) => commands::trials::run(&arguments),
+        Command::Learn(arguments) => commands::learn::run(&arguments),
         Command::Tape(arguments) => commands::tape::run(&arguments),
         Command::Isa(arguments) => commands::isa::run(&arguments),
         Command::Explain(arguments) => commands::explain::run(&arguments),

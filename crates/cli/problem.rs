@@ -64,7 +64,15 @@ impl Problem {
 impl Diagnosed {
     /// A file as people find it.
     pub(crate) fn name(&self, file: usize) -> String {
-        self.folder.join(self.sources.name(file)).display().to_string()
+        self.path_of(self.sources.name(file)).display().to_string()
+    }
+
+    /// The same by its name; a file of the library is in no folder.
+    pub(crate) fn path_of(&self, file: &str) -> PathBuf {
+        match file.starts_with(obverse_compiler::library::PREFIX) {
+            true => PathBuf::from(file),
+            false => self.folder.join(file),
+        }
     }
 }
 

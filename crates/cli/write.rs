@@ -11,6 +11,21 @@ use std::path::{Path, PathBuf};
 /// reads.
 pub(crate) fn check(path: &Path, what: &str, inputs: &[PathBuf]) -> Result<(), Problem> {
     let cannot = |why: String| Err(Problem::of_file(path, why));
+    check_text(path, what, inputs)?;
+    for name in [path, &target(path)?] {
+        let extension = name.extension().and_then(|extension| extension.to_str()).unwrap_or("");
+        if matches!(extension, "obv" | "obvasm" | "toml") {
+            return cannot(format!(
+                "the {what} is no text; `.{extension}` is for files that people write"
+            ));
+        }
+    }
+    Ok(())
+}
+
+/// The same for a file that people read.
+pub(crate) fn check_text(path: &Path, what: &str, inputs: &[PathBuf]) -> Result<(), Problem> {
+    let cannot = |why: String| Err(Problem::of_file(path, why));
     if path.file_name().is_none() || path.is_dir() {
         return cannot(format!("this is a folder; name a file for the {what}"));
     }
@@ -21,14 +36,6 @@ pub(crate) fn check(path: &Path, what: &str, inputs: &[PathBuf]) -> Result<(), P
     let target = target(path)?;
     if let Some(input) = inputs.iter().find(|input| is_same(&target, input)) {
         return cannot(format!("the {what} would overwrite {}", input.display()));
-    }
-    for name in [path, &target] {
-        let extension = name.extension().and_then(|extension| extension.to_str()).unwrap_or("");
-        if matches!(extension, "obv" | "obvasm" | "toml") {
-            return cannot(format!(
-                "the {what} is no text; `.{extension}` is for files that people write"
-            ));
-        }
     }
     Ok(())
 }

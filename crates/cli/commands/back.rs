@@ -13,7 +13,7 @@ use serde_json::{Map, json};
 pub(crate) type Arguments = run::Arguments;
 
 pub(crate) fn run(arguments: &Arguments) -> Result {
-    let program = load::program(&arguments.file)?;
+    let program = load::program_with(&arguments.file, &arguments.parameters.parameters)?;
     let (mut cell, file) = run::workcell(arguments, &program)?;
     let mut machine = load::machine(&program, &cell, &file)?;
     let module = program.verified.module();

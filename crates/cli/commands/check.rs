@@ -3,6 +3,7 @@
 
 use super::Result;
 use crate::load::{self, Program};
+use crate::parameters::ParameterArguments;
 use crate::problem::Problem;
 use crate::{Outcome, moves, show, write};
 use obverse_preflight::Report;
@@ -19,6 +20,8 @@ pub(crate) struct Arguments {
     /// The workcell file, in place of the one that the program names.
     #[arg(long, value_name = "FILE")]
     cell: Option<PathBuf>,
+    #[command(flatten)]
+    parameters: ParameterArguments,
     /// Let a move that is not known before running fail the check, too.
     #[arg(long)]
     strict: bool,
@@ -97,7 +100,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result {
     if arguments.json {
         return as_json(arguments);
     }
-    let program = load::program(&arguments.file)?;
+    let program = load::program_with(&arguments.file, &arguments.parameters.parameters)?;
     let checked = in_its_cell(arguments, program)?;
     let module = checked.program.verified.module();
     let warnings = show::counted(warnings_of(&checked.program));

@@ -46,7 +46,7 @@ struct Row {
 }
 
 pub(super) fn run(arguments: &run::Arguments) -> Result {
-    let program = load::program(&arguments.file)?;
+    let program = load::program_with(&arguments.file, &arguments.parameters.parameters)?;
     let (cell, file) = run::workcell(arguments, &program)?;
     let mut cell = Sim::new(&cell.cell().nominal(), arguments.seed);
     let mut machine = load::machine(&program, &cell, &file)?.without_tape();

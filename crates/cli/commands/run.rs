@@ -2,6 +2,7 @@
 
 use super::{Result, dry};
 use crate::load::{self, Program, Workcell};
+use crate::parameters::ParameterArguments;
 use crate::problem::Problem;
 use crate::recovering::{self, Terminal};
 use crate::report::{self, Report};
@@ -36,6 +37,8 @@ pub(crate) struct Arguments {
     #[arg(long, default_value_t = 1_000_000_000, value_name = "N")]
     pub(crate) limit: u64,
     #[command(flatten)]
+    pub(crate) parameters: ParameterArguments,
+    #[command(flatten)]
     pub(crate) recovering: recovering::RecoveryArguments,
     /// Tell the run to machines: JSON Lines, a summary last.
     #[arg(long)]
@@ -58,7 +61,7 @@ pub(crate) fn run(arguments: &RunArguments) -> Result {
         return dry::run(&arguments.common);
     }
     let arguments = &arguments.common;
-    let program = load::program(&arguments.file)?;
+    let program = load::program_with(&arguments.file, &arguments.parameters.parameters)?;
     let (mut cell, file) = workcell(arguments, &program)?;
     let mut machine = load::machine(&program, &cell, &file)?;
     let mut memory = recovering::memory(arguments.recovering.memory.as_deref())?;

@@ -200,7 +200,8 @@ fn leave_out_of(block: &mut Block<'_>) {
 
 fn item_end(item: &Item<'_>) -> u32 {
     match item {
-        Item::Cell(path) | Item::Import(path) => path.span.end,
+        Item::Cell(path) => path.span.end,
+        Item::Import(import) => import.path.span.end,
         Item::Signal(entry) => entry.span.end,
         Item::Io(io) => io.span.end,
         Item::Joints(joints) => joints.span.end,

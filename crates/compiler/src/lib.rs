@@ -15,9 +15,11 @@ mod fold;
 mod forks;
 mod invert;
 mod keyframes;
+pub mod library;
 mod load;
 mod lower;
 mod merge;
+mod parameters;
 mod path;
 mod reached;
 mod recursion;
@@ -31,8 +33,10 @@ mod units;
 mod uses;
 
 pub use load::{Loader, MAX_IMPORT_DEPTH, MAX_IMPORTED};
+pub use parameters::{Action, Defaults, Parameter};
 
 use allow::Allows;
+use check::Checked;
 use effects::Effects;
 use load::Loaded;
 use obverse_bytecode::Module;
@@ -51,6 +55,8 @@ pub struct Compiled {
     /// What is wrong with the program, by place; at most a few hundred. Warnings are among them.
     /// Its places are those of the sources.
     pub diagnostics: Vec<Diagnostic>,
+    /// The actions of the program with their parameters, in the order of their declaration.
+    pub actions: Vec<Action>,
     /// The files that were read, each as it was read. The first is the one that was asked for.
     pub sources: Sources,
 }
@@ -65,18 +71,37 @@ pub fn compile(name: &str, source: &str) -> Compiled {
 /// Compile a source text and all that it imports; `name` is that of its file, in the folder that
 /// `loader` reads from. Never fails and never panics.
 pub fn compile_files(name: &str, source: &str, loader: &mut dyn Loader) -> Compiled {
+    compile_with(name, source, loader, &Defaults::new())
+}
+
+/// The same with other values in the place of the defaults of parameters.
+pub fn compile_with(
+    name: &str,
+    source: &str,
+    loader: &mut dyn Loader,
+    defaults: &Defaults,
+) -> Compiled {
     let loaded = load::load(name, source, loader);
-    let (module, diagnostics) = compile_loaded(&loaded);
-    Compiled { module, diagnostics, sources: loaded.sources }
+    let Built { module, actions, diagnostics } = compile_loaded(&loaded, defaults);
+    Compiled { module, diagnostics, actions, sources: loaded.sources }
+}
+
+/// What became of the files of a program.
+struct Built {
+    module: Option<Module>,
+    actions: Vec<Action>,
+    diagnostics: Vec<Diagnostic>,
 }
 
 /// The module of a syntax tree whose places are those of the sources.
 fn compile_tree(
     sources: &Sources,
     program: &Program<'_>,
+    defaults: &Defaults,
     reports: Reports,
-) -> (Option<Module>, Reports) {
-    let (program, mut reports) = check::check(sources, program, reports);
+) -> (Option<Module>, Vec<Action>, Reports) {
+    let Checked { program, actions, mut reports } =
+        check::check(sources, program, defaults, reports);
     let module = program.filter(|_| reports.is_whole()).and_then(|program| {
         let effects = Effects::of(&program);
         reversal::check(&program, &effects, &mut reports);
@@ -87,15 +112,15 @@ fn compile_tree(
             false => lower::lower(program, sources, &effects, &mut reports),
         }
     });
-    (module, reports)
+    (module, actions, reports)
 }
 
-fn compile_loaded(loaded: &Loaded) -> (Option<Module>, Vec<Diagnostic>) {
+fn compile_loaded(loaded: &Loaded, defaults: &Defaults) -> Built {
     let sources = &loaded.sources;
     let parsed = merge::parse(loaded);
     let is_whole = parsed.diagnostics.iter().all(|found| found.severity != Severity::Error);
     let reports = Reports::new(is_whole, Allows::of(sources, &parsed.program));
-    let (module, mut reports) = compile_tree(sources, &parsed.program, reports);
+    let (module, actions, mut reports) = compile_tree(sources, &parsed.program, defaults, reports);
     if let Some(module) = &module {
         shortfall::check(sources, &parsed.program, module, &mut reports);
     }
@@ -103,5 +128,5 @@ fn compile_loaded(loaded: &Loaded) -> (Option<Module>, Vec<Diagnostic>) {
     let mut diagnostics = parsed.diagnostics;
     diagnostics.extend(reports.into_diagnostics());
     diagnostics.sort_by_key(|diagnostic| diagnostic.primary.span);
-    (module, diagnostics)
+    Built { module, actions, diagnostics }
 }

@@ -3,6 +3,7 @@
 //! It knows which paths may be imported, cycles and limits. How a file is read a [`Loader`] knows,
 //! and what an import means `merge`.
 
+use crate::library;
 use crate::path;
 use obverse_syntax::codes::Code;
 use obverse_syntax::diagnostic::Diagnostic;
@@ -97,10 +98,14 @@ impl Loading<'_> {
     /// Follow the imports of a file.
     fn imports_of(&mut self, file: usize) {
         let found = imports(&self.loaded.sources, file);
-        let found: Vec<(String, Span)> =
-            found.iter().map(|one| (one.value.to_owned(), one.span)).collect();
-        for (written, at) in found {
-            let target = self.target(file, &written, at);
+        let found =
+            found.iter().map(|one| (one.is_library, one.path.value.to_owned(), one.path.span));
+        let found: Vec<(bool, String, Span)> = found.collect();
+        for (is_library, written, at) in found {
+            let target = match is_library {
+                true => self.of_library(&written, at),
+                false => self.target(file, &written, at),
+            };
             if let Some(target) = target.filter(|target| !self.is_cycle(*target, at)) {
                 self.loaded.imported.insert(at.start, target);
             }
@@ -123,6 +128,27 @@ impl Loading<'_> {
         let target = self.open(&path, Spanned::new(written, at));
         self.asked.insert(path, target);
         target
+    }
+
+    /// A file of the library, which imports others of it alone.
+    fn of_library(&mut self, written: &str, at: Span) -> Option<usize> {
+        let Some((name, text)) = library::find(written) else {
+            let message = format!("`{written}` cannot be imported: the library has no such file");
+            let names = library::FILES.map(|(name, _)| name);
+            let diagnostic = Diagnostic::error(Code::CannotImport, at, message, "imported here")
+                .with_note(format!("it has {}", names.join(", ")));
+            self.loaded.diagnostics.push(match obverse_syntax::nearest(written, names) {
+                Some(meant) => diagnostic.did_you_mean(at, &format!("\"{meant}\"")),
+                None => diagnostic,
+            });
+            return None;
+        };
+        // No path has a colon in it, so that no file of the program is called so.
+        let name = format!("{}{name}.obv", library::PREFIX);
+        match self.files.get(&name) {
+            Some(known) => *known,
+            None => self.follow(&name, text, at),
+        }
     }
 
     /// Find a file that this path has not been asked for before.
@@ -158,13 +184,18 @@ impl Loading<'_> {
             Ok(text) => text,
             Err(why) => return refuse(self, &why),
         };
-        let Some(file) = self.loaded.sources.add(&name, &text) else {
+        self.follow(&name, &text, at)
+    }
+
+    /// Add a file, and all that it imports.
+    fn follow(&mut self, name: &str, text: &str, at: Span) -> Option<usize> {
+        let Some(file) = self.loaded.sources.add(name, text) else {
             let megabytes = MAX_SOURCE_BYTES >> 20;
             let message = format!("the files of a program have at most {megabytes} MiB together");
             self.report(Code::TooManyImports, at, message, "with this one they have more");
             return None;
         };
-        self.files.insert(name, Some(file));
+        self.files.insert(name.to_owned(), Some(file));
         self.chain.push(Link { file, at });
         self.imports_of(file);
         self.chain.pop();

@@ -35,12 +35,12 @@ fn put<'s>(
     }
     for item in items {
         match item {
-            Item::Import(path) => {
+            Item::Import(import) => {
                 // What could not be imported has been reported.
-                if let Some(&imported) = loaded.imported.get(&path.span.start) {
+                if let Some(&imported) = loaded.imported.get(&import.path.span.start) {
                     put(imported, loaded, files, program);
                 }
-                program.items.push(Item::Import(path));
+                program.items.push(Item::Import(import));
             }
             item => program.items.push(item),
         }

@@ -306,6 +306,8 @@ pub(crate) enum StatementKind {
     Kept(FunctionId),
     /// Raise an error.
     Throw(ErrorId),
+    /// Trap unless a condition holds.
+    Demand(Expression, ReasonId),
     /// Raise an error unless a condition holds.
     Requires(Expression, ErrorId),
 }

@@ -44,6 +44,10 @@ impl ValueType {
     pub(crate) const ANGLE: Self = Self::Real(Dimension::ANGLE);
     /// A real in seconds.
     pub(crate) const TIME: Self = Self::Real(Dimension::TIME);
+    /// A real in radians.
+    pub(crate) const ANGLE: Self = Self::Real(Dimension::ANGLE);
+    /// A real in metres per second.
+    pub(crate) const SPEED: Self = Self::Real(Dimension::SPEED);
     /// A real in newtons.
     pub(crate) const FORCE: Self = Self::Real(Dimension::FORCE);
 

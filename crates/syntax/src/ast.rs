@@ -22,7 +22,7 @@ pub enum Item<'s> {
     /// `cell "peg_in_hole.toml"`
     Cell(Spanned<&'s str>),
     /// `import "poses.obv"`: what is declared there, as if it stood here.
-    Import(Spanned<&'s str>),
+    Import(Import<'s>),
     /// `output gripper = 0`, `input part_present = 3`
     Signal(SignalDeclaration<'s>),
     /// `io gripper_open { set 0 low; sleep 0.5 s } reverse gripper_close`
@@ -61,6 +61,15 @@ impl<'s> Item<'s> {
             Self::Sequence(sequence) => Some(sequence.name),
         }
     }
+}
+
+/// Another file whose declarations stand here.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Import<'s> {
+    /// `library`: one that comes with the language.
+    pub is_library: bool,
+    /// Its path, or its name in the library.
+    pub path: Spanned<&'s str>,
 }
 
 /// What is done at the end of the program, whatever came before.
@@ -559,6 +568,28 @@ pub struct Parameter<'s> {
     pub name: Name<'s>,
     /// Its type: int, number, length, angle, time, force, speed, bool, joints, item.
     pub type_name: Name<'s>,
+    /// `in 5 mm to 60 mm`: the least and the most that it may be.
+    pub range: Option<ValueRange<'s>>,
+    /// `= 20 mm`: what it is where a call does not say.
+    pub default: Option<Expression<'s>>,
+}
+
+/// `in 5 mm to 60 mm`
+#[derive(Clone, Debug, PartialEq)]
+pub struct ValueRange<'s> {
+    /// The least value.
+    pub least: Expression<'s>,
+    /// The most.
+    pub most: Expression<'s>,
+}
+
+/// What a call gives to a parameter.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Argument<'s> {
+    /// `depth:`: which parameter; without it, the next in the order of their declaration.
+    pub name: Option<Name<'s>>,
+    /// The value.
+    pub value: Expression<'s>,
 }
 
 /// Statements in braces.
@@ -598,7 +629,7 @@ pub enum StatementKind<'s> {
         /// The sequence or action.
         name: Name<'s>,
         /// Its arguments.
-        arguments: Vec<Expression<'s>>,
+        arguments: Vec<Argument<'s>>,
     },
     /// `io gripper_open`
     Io(Name<'s>),

@@ -173,11 +173,12 @@ impl<'s, 'k> Lexer<'s, 'k> {
         self.clauses = match (token, self.clauses) {
             (Token::OpenBrace, Some((of, open))) => Some((of, open + 1)),
             (Token::OpenBrace, None) => match self.before_previous {
-                // What is called `error` may be counted: `repeat error times {`.
+                // What is called `error` may be counted: `repeat error times {`. What is called
+                // `item` may stand before a declaration: `reverse item cleanup {`.
                 of @ (Token::Error | Token::Move | Token::Item | Token::Io)
                     if self.previous.is_word()
                         && !self.previous.is_reserved()
-                        && self.previous != Token::Times =>
+                        && !matches!(self.previous, Token::Times | Token::Cleanup) =>
                 {
                     Some((of, 1))
                 }
@@ -345,7 +346,10 @@ impl<'s, 'k> Lexer<'s, 'k> {
             self.tokens.bump(blanks_and_sign);
             return Token::BadQuantity;
         }
-        if word.is_empty() || is_before_assignment(&word_and_on[word.len()..]) {
+        // In brackets no statement begins, and what follows is the default of a parameter.
+        let is_assigned =
+            !self.nesting.is_in_expression() && is_before_assignment(&word_and_on[word.len()..]);
+        if word.is_empty() || is_assigned {
             return token;
         }
         if let Some(length) = unit_length(word_and_on) {

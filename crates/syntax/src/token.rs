@@ -104,7 +104,7 @@ tokens! {
         Error "error" Escalating "escalating" Failure "failure" Fast "fast" Fatal "fatal"
         File "file" Forward "forward" From "from" Give "give" High "high" Import "import" In "in"
         Initial "initial" Item "item" Joint "joint" Joints "joints" Keyframe "keyframe"
-        Learned "learned" Left "left" Lighter "lighter" Limit "limit" Linearly "linearly" Low "low"
+        Learned "learned" Left "left" Library "library" Lighter "lighter" Limit "limit" Linearly "linearly" Low "low"
         Missing "missing" Moves "moves" Normal "normal" Of "of" On "on" Once "once"
         Operator "operator" Opposite "opposite" Otherwise "otherwise" Out "out" Output "output"
         Perturbation "perturbation" Perturbed "perturbed" Position "position" Program "program"

@@ -286,7 +286,7 @@ pub(crate) fn statement_outside(source: &str, sink: &Sink<'_>, span: Span) {
 pub(crate) fn declaration_inside<'s>(sink: &Sink<'s>, item: Item<'s>, start: u32) {
     let (word, end) = match &item {
         Item::Cell(path) => ("cell", path.span.end),
-        Item::Import(path) => ("import", path.span.end),
+        Item::Import(import) => ("import", import.path.span.end),
         Item::Signal(signal) => match signal.kind {
             SignalKind::Output => ("output", signal.name.span.end),
             SignalKind::Input => ("input", signal.name.span.end),

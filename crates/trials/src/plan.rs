@@ -47,6 +47,10 @@ pub enum Purpose {
     Trial = 1,
     /// Assemblies that are learned from.
     Learning = 2,
+    /// Runs that choose among parameters.
+    Parameters = 3,
+    /// Runs that confirm what was chosen.
+    Confirmation = 4,
 }
 
 /// The seed of an assembly of a campaign: below 2^53, so that every reader of JSON keeps it.

@@ -19,17 +19,23 @@ pub struct Interval {
 /// nothing.
 #[must_use]
 pub fn wilson(successes: u64, trials: u64) -> Option<Interval> {
-    if trials == 0 {
+    wilson_weighted(successes as f64, trials as f64)
+}
+
+/// The same for weighted trials, of which there are as many as weigh as much.
+#[must_use]
+pub fn wilson_weighted(successes: f64, count: f64) -> Option<Interval> {
+    if count <= 0.0 {
         return None;
     }
-    let (count, share) = (trials as f64, successes as f64 / trials as f64);
+    let share = (successes / count).min(1.0);
     let square = Z95 * Z95 / count;
     let middle = share + square / 2.0;
     let half = Z95 * libm::sqrt(share * (1.0 - share) / count + square / (4.0 * count));
     let bound = |value: f64| (value / (1.0 + square)).clamp(0.0, 1.0);
     // At the ends the formula is exact, and rounding must not say otherwise.
-    let low = if successes == 0 { 0.0 } else { bound(middle - half) };
-    let high = if successes == trials { 1.0 } else { bound(middle + half) };
+    let low = if share <= 0.0 { 0.0 } else { bound(middle - half) };
+    let high = if share >= 1.0 { 1.0 } else { bound(middle + half) };
     Some(Interval { low, high })
 }
 

@@ -1,10 +1,11 @@
 //! `obverse trials`: try a program over many seeded assemblies, by one strategy or several.
 
 mod journal;
-mod progress;
+pub(super) mod progress;
 
 use super::Result;
 use crate::load::{self, Program};
+use crate::parameters::ParameterArguments;
 use crate::problem::Problem;
 use crate::{Outcome, files, lacking, show, write};
 use journal::Journal;
@@ -68,6 +69,8 @@ pub(crate) struct Arguments {
     /// From how many assemblies, of seeds of their own, the strategy `learned` learns beforehand.
     #[arg(long, default_value_t = 1024, value_name = "N")]
     learn: u64,
+    #[command(flatten)]
+    parameters: ParameterArguments,
     /// How long a person takes, each time that one has to come, in seconds.
     #[arg(long, default_value_t = 300.0, value_name = "S")]
     person: f64,
@@ -106,7 +109,7 @@ fn campaign(arguments: &Arguments, path: &Path) -> std::result::Result<Part, Pro
     let strategies =
         Strategy::list(&arguments.strategy).map_err(|error| Problem::new(error.to_string()))?;
     let jobs = check(arguments)?;
-    let program = load::program(path)?;
+    let program = load::program_with(path, &arguments.parameters.parameters)?;
     let (cell, file) = load::cell(&program, arguments.cell.as_deref())?;
     let terms = Terms {
         person_s: arguments.person,

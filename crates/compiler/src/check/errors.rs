@@ -272,11 +272,11 @@ impl<'s> Checker<'s> {
             return None;
         };
         let signature = &self.signatures[usize::from(id)];
-        if let Some((_, _, parameter)) = signature.parameters.first() {
+        if let Some(parameter) = signature.parameters.first() {
             let message = format!("`{}` has parameters, and a recovery is given none", name.value);
             let diagnostic =
                 Diagnostic::error(Code::RecoveryParameters, name.span, message, "a recovery")
-                    .with_label(*parameter, "a parameter");
+                    .with_label(parameter.span, "a parameter");
             self.reports.add(diagnostic);
             return None;
         }

@@ -23,14 +23,17 @@ impl<'s> Checker<'s> {
         let kind = if sequence.is_action { FunctionKind::Action } else { FunctionKind::Sequence };
         let check = |checker: &mut Self| {
             checker.declare_parameters(id, sequence);
-            Body::Block(checker.block(&sequence.body))
+            let mut statements = checker.require_ranges(id);
+            let mut body = checker.block(&sequence.body);
+            statements.append(&mut body.statements);
+            Body::Block(Block { statements, ..body })
         };
         Some(self.function(id, sequence.name, kind, check))
     }
 
     fn declare_parameters(&mut self, id: FunctionId, sequence: &Sequence<'s>) {
         let signature = &self.signatures[id.index()];
-        let types: Vec<_> = signature.parameters.iter().map(|(_, of_type, _)| *of_type).collect();
+        let types: Vec<_> = signature.parameters.iter().map(|known| known.of_type).collect();
         for (parameter, of_type) in sequence.parameters.iter().zip(types) {
             self.check_passable(parameter.type_name, of_type);
             self.declare_local(parameter.name, of_type);

@@ -15,6 +15,7 @@ mod incident;
 mod motion;
 mod names;
 mod operators;
+mod parameters;
 mod program;
 mod raise;
 mod reverse;
@@ -25,6 +26,7 @@ mod unused;
 
 use crate::faults::NamedFault;
 use crate::keyframes::KeyframeFlow;
+use crate::parameters::Defaults;
 use crate::report::Reports;
 use crate::tree::{Expression, Function, MAX_SLOTS};
 use crate::types::ValueType;
@@ -37,10 +39,11 @@ use obverse_syntax::codes::Code;
 use obverse_syntax::diagnostic::Diagnostic;
 use obverse_syntax::sources::Sources;
 use obverse_syntax::span::Span;
+use parameters::Range;
 use std::collections::{BTreeSet, HashMap};
 use still::Movers;
 
-pub(crate) use program::check;
+pub(crate) use program::{Checked, check};
 
 /// More names than these are not listed where none of them is near the one that is written.
 const MAX_LISTED: usize = 6;
@@ -49,8 +52,20 @@ const MAX_LISTED: usize = 6;
 #[derive(Clone, Debug, Default)]
 struct Signature {
     named: Span,
-    parameters: Vec<(String, ValueType, Span)>,
+    parameters: Vec<Parameter>,
     counterpart: Option<FunctionId>,
+}
+
+/// A parameter of a function.
+#[derive(Clone, Debug)]
+struct Parameter {
+    name: String,
+    of_type: ValueType,
+    span: Span,
+    range: Option<Range>,
+    default: Option<Expression>,
+    /// Whether some call leaves it to its default.
+    is_left_to_default: bool,
 }
 
 /// The tables whose entries come into being when they are named.
@@ -65,6 +80,8 @@ struct Interned<'s> {
 /// What has been found out so far.
 struct Checker<'s> {
     sources: &'s Sources,
+    /// What is put in the place of defaults.
+    defaults: &'s Defaults,
     reports: Reports,
     names: Names<'s>,
     module: Module,

@@ -4,9 +4,10 @@
 use super::frame::FrameScope;
 use super::names::{Found, Meaning, Names};
 use super::still::Movers;
-use super::{Checker, Interned, Signature};
+use super::{Checker, Interned, Parameter, Signature};
 use crate::faults;
 use crate::keyframes::KeyframeFlow;
+use crate::parameters::{Action, Defaults};
 use crate::path;
 use crate::reached;
 use crate::report::Reports;
@@ -21,25 +22,37 @@ use obverse_syntax::sources::Sources;
 use obverse_syntax::span::Span;
 use std::collections::{BTreeSet, HashMap};
 
+/// What became of the check of a program.
+pub(crate) struct Checked {
+    /// The checked tree, if there are no mistakes.
+    pub(crate) program: Option<tree::Program>,
+    /// The actions with their parameters.
+    pub(crate) actions: Vec<Action>,
+    /// What is wrong.
+    pub(crate) reports: Reports,
+}
+
 /// Check a program; without mistakes there is a checked tree.
 pub(crate) fn check<'s>(
     sources: &'s Sources,
     program: &Program<'s>,
+    defaults: &'s Defaults,
     reports: Reports,
-) -> (Option<tree::Program>, Reports) {
-    let mut checker = Checker::new(sources, reports);
+) -> Checked {
+    let mut checker = Checker::new(sources, defaults, reports);
     checker.declare_items(program);
     checker.check_declarations(program);
     checker.check_bodies(program);
     let main = checker.main(program);
     checker.check_checkpoints();
     let unnamed = checker.warn_of_unused(main);
+    let actions = checker.actions(program);
     let flow = std::mem::take(&mut checker.keyframes);
     flow.check(&checker.module, &mut checker.reports);
     let Checker { reports, functions, module, first_values, named_faults, .. } = checker;
     let functions: Option<Vec<tree::Function>> = functions.into_iter().collect();
     let mut reports = reports;
-    let checked = match (main, functions) {
+    let program = match (main, functions) {
         (Some(main), Some(functions)) if !reports.has_errors() => {
             let cleanup = module.cleanup.map(FunctionId);
             let checked = tree::Program { module, first_values, functions, main, cleanup };
@@ -49,14 +62,14 @@ pub(crate) fn check<'s>(
         }
         _ => None,
     };
-    (checked, reports)
+    Checked { program, actions, reports }
 }
 
 /// How many functions a module has at the most; replacements and the start are among them.
 const MAX_FUNCTIONS: usize = 65_535;
 
 impl<'s> Checker<'s> {
-    fn new(sources: &'s Sources, reports: Reports) -> Self {
+    fn new(sources: &'s Sources, defaults: &'s Defaults, reports: Reports) -> Self {
         let file = |index| SourceFile {
             name: sources.name(index).to_owned(),
             text: sources.text(index).to_owned(),
@@ -64,6 +77,7 @@ impl<'s> Checker<'s> {
         let files = (0..sources.len()).map(file).collect();
         Self {
             sources,
+            defaults,
             reports,
             names: Names::default(),
             module: Module { sources: files, ..Module::default() },
@@ -159,7 +173,14 @@ impl<'s> Checker<'s> {
         let id = self.declare_function(sequence.name, kind);
         let parameters = sequence.parameters.iter().map(|parameter| {
             let of_type = self.type_named(parameter.type_name);
-            (parameter.name.value.to_owned(), of_type, parameter.name.span)
+            Parameter {
+                name: parameter.name.value.to_owned(),
+                of_type,
+                span: parameter.name.span,
+                range: None,
+                default: None,
+                is_left_to_default: false,
+            }
         });
         let parameters: Vec<_> = parameters.collect();
         self.signatures[id.index()].parameters = parameters;
@@ -223,10 +244,10 @@ impl<'s> Checker<'s> {
                 Item::Io(io) => self.check_counterpart(io),
                 Item::Error(error) => self.check_error(error),
                 Item::AdvancedMove(guarded) => self.check_opposite_move(guarded),
+                Item::Sequence(sequence) => self.check_parameters(sequence),
                 Item::Cell(_)
                 | Item::Import(_)
                 | Item::Signal(_)
-                | Item::Sequence(_)
                 | Item::Cleanup(_)
                 | Item::Allow(_) => {}
             }

@@ -10,7 +10,7 @@ use crate::tree::{
 };
 use crate::types::ValueType;
 use obverse_bytecode::Mentioned;
-use obverse_isa::{FunctionId, Instr, Level, LocalId, ReasonId, SlotId, SpeedId, ToolId, Type};
+use obverse_isa::{Instr, Level, LocalId, ReasonId, SlotId, SpeedId, ToolId, Type};
 use obverse_syntax::ast::{self, AssignOperator, Name, Primitive, Signal, SpeedWord};
 use obverse_syntax::codes::Code;
 use obverse_syntax::diagnostic::Diagnostic;
@@ -114,60 +114,34 @@ impl<'s> Checker<'s> {
     fn call(
         &mut self,
         name: Name<'s>,
-        arguments: &[ast::Expression<'s>],
+        arguments: &[ast::Argument<'s>],
         span: Span,
     ) -> Option<StatementKind> {
         if self.movers.may_move_in(name.value) {
             self.lose_position("what is called here may move the arm", span);
         }
         let Some(callee) = self.callee(name) else {
-            arguments.iter().for_each(|argument| _ = self.any_value(argument));
+            arguments.iter().for_each(|argument| _ = self.any_value(&argument.value));
             return None;
         };
-        let parameters = self.signatures[callee.index()].parameters.clone();
-        if parameters.len() != arguments.len() {
-            arguments.iter().for_each(|argument| _ = self.any_value(argument));
-            self.report_argument_count(name, callee, parameters.len(), arguments.len(), span);
-            return None;
-        }
-        let mut values = Vec::new();
+        let values = self.bind(name, callee, arguments, span)?;
         let mut computed = 0;
-        for ((parameter, of_type, declared), argument) in parameters.into_iter().zip(arguments) {
-            let need = Need::new(of_type, format!("the parameter `{parameter}`"));
-            let value = self.value(argument, &need.declared(declared));
+        for (index, value) in values.iter().enumerate() {
             computed += value.size().0;
-            let to = (callee, LocalId(u8::try_from(values.len()).unwrap_or(u8::MAX)));
+            let to = (callee, LocalId(u8::try_from(index).unwrap_or(u8::MAX)));
             match value.kind {
-                ExpressionKind::Item(item) => self.keyframes.give(item, to, argument.span),
-                ExpressionKind::Local(local) if of_type == ValueType::Item => {
+                ExpressionKind::Item(item) => self.keyframes.give(item, to, value.span),
+                ExpressionKind::Local(local) if value.of_type == ValueType::Item => {
                     self.keyframes.pass(self.parameter(local), to);
                 }
                 _ => {}
             }
-            values.push(value);
         }
         if computed > MAX_COMPUTED || values.len() > super::expression::MAX_HELD {
             self.report_too_large(span, computed, values.len());
             return None;
         }
         Some(StatementKind::Call(callee, values))
-    }
-
-    fn report_argument_count(
-        &mut self,
-        name: Name<'s>,
-        callee: FunctionId,
-        needed: usize,
-        given: usize,
-        span: Span,
-    ) {
-        let plural = if needed == 1 { "" } else { "s" };
-        let message = format!("`{}` takes {needed} argument{plural}", name.value);
-        let declared = self.signatures[callee.index()].named;
-        let diagnostic =
-            Diagnostic::error(Code::ArgumentCount, span, message, format!("given {given}"))
-                .with_label(declared, "declared here");
-        self.reports.add(diagnostic);
     }
 
     fn io(&mut self, name: Name<'s>) -> Option<StatementKind> {

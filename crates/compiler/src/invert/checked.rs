@@ -2,6 +2,7 @@
 //! are integers, and which forks depend on whose turn it is.
 
 use super::refusal::refusal;
+use crate::Defaults;
 use crate::allow::Allows;
 use crate::check;
 use crate::effects::Effects;
@@ -39,7 +40,8 @@ impl<'m> Checked<'m> {
             crossed: HashMap::new(),
             may_be_more: false,
         };
-        let tree = check::check(sources, program, Reports::new(true, Allows::default())).0;
+        let reports = Reports::new(true, Allows::default());
+        let tree = check::check(sources, program, &Defaults::new(), reports).program;
         if let Some(tree) = tree {
             // What a program allows is warned about here, too.
             let mut reports = Reports::new(true, Allows::default());

@@ -27,7 +27,7 @@ mod walk;
 use crate::allow::{self, Allows};
 use crate::load::{self, Loaded, Loader};
 use crate::report::Reports;
-use crate::{compile, compile_loaded, compile_tree, merge};
+use crate::{Built, Defaults, compile, compile_loaded, compile_tree, merge};
 use checked::Checked;
 use obverse_syntax::ast::{Item, Program};
 use obverse_syntax::diagnostic::{Diagnostic, Severity};
@@ -108,7 +108,7 @@ pub fn invert_files(
 }
 
 fn invert_loaded(loaded: &Loaded, name: &str, sequence: &str) -> Result<Inverse, NoInverse> {
-    let (module, diagnostics) = compile_loaded(loaded);
+    let Built { module, diagnostics, .. } = compile_loaded(loaded, &Defaults::new());
     let Some(module) = module else { return Err(NoInverse::Diagnosed(diagnostics)) };
     let mut program = merge::parse(loaded).program;
     allow::leave_out(&mut program);
@@ -148,7 +148,7 @@ fn name_of<'s>(item: &Item<'s>) -> Option<&'s str> {
 /// stand where those stand that they are the inverses of, and so does what is wrong with them.
 fn does_not_compile(sources: &Sources, inverse: &Program<'_>, name: &str) -> Vec<Diagnostic> {
     let reports = Reports::new(true, Allows::default());
-    let (_, reports) = compile_tree(sources, inverse, reports);
+    let (_, _, reports) = compile_tree(sources, inverse, &Defaults::new(), reports);
     let found = reports.into_diagnostics().into_iter();
     let errors = found.filter(|found| found.severity == Severity::Error);
     let refused = |found: Diagnostic| {

@@ -5,8 +5,8 @@ use super::effect::Declared;
 use super::place::{Arm, Base, Spot, Way, opposite};
 use super::refusal::refusal;
 use super::walk;
-use obverse_syntax::ast::{Expression, Heading, Name, StatementKind, Target, Turn};
-use obverse_syntax::span::Span;
+use obverse_syntax::ast::{Argument, Expression, Heading, Name, StatementKind, Target, Turn};
+use obverse_syntax::span::{Span, Spanned};
 use std::collections::HashMap;
 
 impl<'p> Inverter<'p> {
@@ -84,10 +84,10 @@ impl<'p> Inverter<'p> {
     pub(super) fn call(
         &mut self,
         name: Name<'p>,
-        arguments: &'p [Expression<'p>],
+        arguments: &'p [Argument<'p>],
         span: Span,
     ) -> Vec<Emitted<'p>> {
-        arguments.iter().for_each(|argument| self.require_pure(argument));
+        arguments.iter().for_each(|argument| self.require_pure(&argument.value));
         if !matches!(self.summaries.get(name.value), Some(Summary::Refused)) {
             self.require_kept_arguments(name, arguments, span);
         }
@@ -135,12 +135,15 @@ impl<'p> Inverter<'p> {
     fn outside(
         &self,
         name: Name<'p>,
-        arguments: &'p [Expression<'p>],
+        arguments: &'p [Argument<'p>],
         spot: &Spot<'p>,
     ) -> Option<Spot<'p>> {
         let parameters = &self.plan.sequence(name.value)?.parameters;
-        let names = parameters.iter().map(|parameter| parameter.name.value);
-        let given: HashMap<_, _> = names.zip(arguments).collect();
+        let given = arguments.iter().enumerate().filter_map(|(position, argument)| {
+            let name = argument.name.or(parameters.get(position).map(|known| known.name))?;
+            Some((name.value, &argument.value))
+        });
+        let given: HashMap<_, _> = given.collect();
         spot.outside(&given, self.tool, |name| self.plan.is_of_program(name))
     }
 
@@ -148,19 +151,19 @@ impl<'p> Inverter<'p> {
     fn require_kept_arguments(
         &mut self,
         name: Name<'p>,
-        arguments: &'p [Expression<'p>],
+        arguments: &'p [Argument<'p>],
         span: Span,
     ) {
         let effect = self.plan.effect_of_call(name.value);
         for argument in arguments {
-            let names = walk::names_of(argument);
+            let names = walk::names_of(&argument.value);
             let variables: Vec<&str> =
                 names.into_iter().filter(|name| !self.plan.is_constant(name)).collect();
             if effect.changes_any(&variables) {
                 let message = "a call that changes what it is given has no inverse";
                 let why = "this is something else after the call";
                 self.refuse(
-                    refusal(argument.span, message, why)
+                    refusal(argument.value.span, message, why)
                         .with_label(span, "the call may change it")
                         .with_help("give it a variable that the call does not change"),
                 );

@@ -30,7 +30,9 @@ pub(super) fn expressions<'a, 's>(statement: &'a Statement<'s>) -> Vec<&'a Expre
     match &statement.kind {
         StatementKind::Move { target: Target::Relative { distance, .. }, .. } => vec![distance],
         StatementKind::Move { target: Target::Turned(turn), .. } => turn.amounts().collect(),
-        StatementKind::Call { arguments, .. } => arguments.iter().collect(),
+        StatementKind::Call { arguments, .. } => {
+            arguments.iter().map(|argument| &argument.value).collect()
+        }
         StatementKind::Wait(value)
         | StatementKind::WaitUntil { timeout: value, .. }
         | StatementKind::Primitive(Primitive::Sleep { duration: value, .. })

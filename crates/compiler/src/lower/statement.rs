@@ -22,9 +22,9 @@ impl Lower<'_> {
 
     fn statement(&mut self, statement: &Statement) {
         use StatementKind::{
-            Advance, Barrier, Break, Call, Checkpoint, For, Fork, If, Io, Irreversible, Kept, Loop,
-            Move, Output, Remember, Requires, Return, Reversed, Set, SetFor, Store, Throw, Update,
-            Wait, WaitInput, While,
+            Advance, Barrier, Break, Call, Checkpoint, Demand, For, Fork, If, Io, Irreversible,
+            Kept, Loop, Move, Output, Remember, Requires, Return, Reversed, Set, SetFor, Store,
+            Throw, Update, Wait, WaitInput, While,
         };
         let due: Vec<ErrorId> = self.due(&statement.kind);
         if !due.is_empty() {
@@ -78,6 +78,10 @@ impl Lower<'_> {
             }
             Reversed(block, replacement) => self.reversed(block, *replacement),
             Kept(function) => self.kept(*function),
+            Demand(condition, reason) => {
+                self.expression(condition);
+                self.push(Instr::Require { prefix: PREFIX, reason: *reason });
+            }
             Throw(error) | Requires(_, error) => self.raise(*error),
         }
         let is_thrown = matches!(statement.kind, Throw(_) | Requires(..));

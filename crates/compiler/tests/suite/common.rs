@@ -46,6 +46,11 @@ fn code(module: &Module, name: &str) -> String {
     lines.collect::<Vec<_>>().join("\n")
 }
 
+/// The code of a function of a program.
+pub(crate) fn code_of(source: &str, name: &str) -> String {
+    code(&module(source), name)
+}
+
 /// All code.
 pub(crate) fn listing(module: &Module) -> String {
     let functions = module.functions.iter();

@@ -225,7 +225,8 @@ macro_rules! errors {
         right "var part = 1 / 2.0\n\
                sequence main { if part > 0 { wait 1 s } }"
     ArgumentCount "E0208" "too many or too few arguments"
-        why "A call gives each parameter its value, in the order of their declaration."
+        why "A call gives each parameter its value, in the order of their declaration or by name. \
+             One that has a default may be left out."
         wrong "action lift(height: length) { move height up }\n\
                sequence main { call lift }"
         right "action lift(height: length) { move height up }\n\
@@ -250,6 +251,22 @@ macro_rules! errors {
         right "item peg { keyframe grasp = [0, 0, 20] mm }\n\
                sequence main { call pick(peg) }\n\
                action pick(part: item) { move to part.grasp }"
+    OutsideRange "E0212" "a value outside the range of its parameter"
+        why "A parameter may say between which values it lies, both included. Its default and every \
+             value that is known before the program runs are held to that here; a value that is \
+             computed is looked at when the action begins, and traps."
+        wrong "action lift(height: length in 5 mm to 60 mm = 20 mm) { move height up }\n\
+               sequence main { call lift(height: 80 mm) }"
+        right "action lift(height: length in 5 mm to 60 mm = 20 mm) { move height up }\n\
+               sequence main { call lift(height: 50 mm) }"
+    WrongArgument "E0213" "an argument that belongs to no parameter"
+        why "An argument with a name goes to the parameter of that name, one without a name to the \
+             next in the order of their declaration. Those with a name come last, and each \
+             parameter is given once."
+        wrong "action lift(height: length = 20 mm) { move height up }\n\
+               sequence main { call lift(depth: 5 mm) }"
+        right "action lift(height: length = 20 mm) { move height up }\n\
+               sequence main { call lift(height: 5 mm) }"
 
     // E03xx: statements, structure and errors.
     NoMain "E0301" "a program without a main sequence"

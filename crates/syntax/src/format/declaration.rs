@@ -4,8 +4,8 @@ use super::piece::{Column, Glue, Member};
 use super::writer::{Style, Writer};
 use crate::ast::{
     Allow, Behaviour, Bound, Change, Continuation, Depth, ErrorClause, Expression, Extent, Item,
-    JointsDeclaration, Keyframe, MoveClause, Name, Otherwise, Recovery, Respond, Sequence,
-    Severity, SignalKind,
+    JointsDeclaration, Keyframe, MoveClause, Name, Otherwise, Parameter, Recovery, Respond,
+    Sequence, Severity, SignalKind, ValueRange,
 };
 use crate::span::Spanned;
 
@@ -34,9 +34,12 @@ impl<'s> Writer<'s> {
                 self.word("cell");
                 self.quoted(path.value);
             }
-            Item::Import(path) => {
+            Item::Import(import) => {
                 self.word("import");
-                self.quoted(path.value);
+                if import.is_library {
+                    self.word("library");
+                }
+                self.quoted(import.path.value);
             }
             Item::Signal(entry) => {
                 self.named(
@@ -119,12 +122,27 @@ impl<'s> Writer<'s> {
         if !sequence.parameters.is_empty() || self.is_next("(") {
             self.glue(Glue::Tight);
             self.list(["(", ")"], &sequence.parameters, |writer, parameter| {
-                writer.text(parameter.name.value);
-                writer.tight(":");
-                writer.text(parameter.type_name.value);
+                writer.parameter(parameter);
             });
         }
         self.body(&sequence.body, !sequence.body.statements.is_empty());
+    }
+
+    /// `depth: length in 5 mm to 60 mm = 20 mm`
+    fn parameter(&mut self, parameter: &Parameter<'s>) {
+        self.text(parameter.name.value);
+        self.tight(":");
+        self.text(parameter.type_name.value);
+        if let Some(ValueRange { least, most }) = &parameter.range {
+            self.word("in");
+            self.sum(least);
+            self.word("to");
+            self.sum(most);
+        }
+        if let Some(default) = &parameter.default {
+            self.word("=");
+            self.expression(default);
+        }
     }
 
     fn error_clause(&mut self, clause: &Spanned<ErrorClause<'s>>) {

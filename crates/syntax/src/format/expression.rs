@@ -100,6 +100,11 @@ impl<'s> Writer<'s> {
     }
 
     /// Arguments in parentheses.
+    /// An expression where only what is no comparison stands.
+    pub(super) fn sum(&mut self, expression: &Expression<'s>) {
+        self.operand(expression, Level::Sum);
+    }
+
     pub(super) fn arguments(&mut self, arguments: &[Expression<'s>]) {
         self.glue(Glue::Tight);
         self.list(["(", ")"], arguments, Self::expression);

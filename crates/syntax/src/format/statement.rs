@@ -3,8 +3,8 @@
 use super::piece::{Column, Glue};
 use super::writer::{Style, Writer};
 use crate::ast::{
-    AssignOperator, Block, Expression, FrameWord, Heading, Primitive, ReverseParameter, Signal,
-    SpeedWord, Statement, StatementKind, Target, Turn, VariableDeclaration,
+    Argument, AssignOperator, Block, Expression, FrameWord, Heading, Primitive, ReverseParameter,
+    Signal, SpeedWord, Statement, StatementKind, Target, Turn, VariableDeclaration,
 };
 use crate::span::{Span, Spanned};
 
@@ -26,6 +26,15 @@ impl<'s> Writer<'s> {
         self.braces(&block.statements, style, Self::statement);
     }
 
+    /// `depth: 12 mm`, or the value alone.
+    fn argument(&mut self, argument: &Argument<'s>) {
+        if let Some(name) = argument.name {
+            self.text(name.value);
+            self.tight(":");
+        }
+        self.expression(&argument.value);
+    }
+
     fn statement(&mut self, statement: &Statement<'s>) {
         match &statement.kind {
             StatementKind::Move { target, linear, always } => {
@@ -35,7 +44,8 @@ impl<'s> Writer<'s> {
             StatementKind::Call { name, arguments } => {
                 self.named("call", name.value);
                 if !arguments.is_empty() || self.is_next("(") {
-                    self.arguments(arguments);
+                    self.glue(Glue::Tight);
+                    self.list(["(", ")"], arguments, Self::argument);
                 }
             }
             StatementKind::Io(name) => self.named("io", name.value),

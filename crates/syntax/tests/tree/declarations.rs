@@ -11,7 +11,7 @@ fn a_cell_is_a_path() {
 #[test]
 fn an_import_is_a_path() {
     let Item::Import(path) = item("import \"poses/left.obv\"") else { panic!() };
-    assert_eq!(path.value, "poses/left.obv");
+    assert_eq!(path.path.value, "poses/left.obv");
 }
 
 #[test]

@@ -1,7 +1,8 @@
 //! Declarations: data, I/O operations, advanced moves, sequences, errors.
 
+use super::expression::bounds;
 use super::scope::{Frame, Type, Variable};
-use super::{Callee, Generator};
+use super::{Callee, Generator, Parameter};
 use arbitrary::Result;
 
 /// Every fault that a program can name.
@@ -252,10 +253,10 @@ impl Generator<'_, '_> {
                 true => Type::Int,
                 false => self.parameter_type()?,
             };
-            let parameter = self.name("p");
-            written.push(format!("{parameter}: {}", of_type.name()));
-            self.declare(&parameter, of_type, !is_bound);
-            callee.parameters.push(of_type);
+            let parameter = self.parameter(of_type, is_bound)?;
+            written.push(parameter.1);
+            self.declare(&parameter.0.name, of_type, !is_bound);
+            callee.parameters.push(parameter.0);
         }
         self.open(&format!("{word} {name}({})", written.join(", ")));
         self.statements(6)?;
@@ -270,6 +271,25 @@ impl Generator<'_, '_> {
         Ok(self.taken())
     }
 
+    /// A parameter, and how it is written; what bounds a recursion has no range.
+    fn parameter(&mut self, of_type: Type, is_bound: bool) -> Result<(Parameter, String)> {
+        let name = self.name("p");
+        let bounds = bounds(of_type).filter(|_| !is_bound);
+        let range = if self.one_in(3)? { bounds } else { None };
+        let default = match bounds {
+            Some((low, high)) if self.one_in(3)? => Some(self.choose(&[low, high])?),
+            _ => None,
+        };
+        let mut written = format!("{name}: {}", of_type.name());
+        if let Some((low, high)) = range {
+            written.push_str(&format!(" in {low} to {high}"));
+        }
+        if let Some(default) = default {
+            written.push_str(&format!(" = {default}"));
+        }
+        Ok((Parameter { name, of_type, range, has_default: default.is_some() }, written))
+    }
+
     fn parameter_type(&mut self) -> Result<Type> {
         let of_type = self.choose(&Type::OF_VARIABLES)?;
         let wants_item = !self.items.is_empty() && self.one_in(4)?;
@@ -282,8 +302,8 @@ impl Generator<'_, '_> {
         self.open(&format!("if {bound} > 0"));
         self.block(3)?;
         let mut arguments = vec![format!("{bound} - 1")];
-        for of_type in &callee.parameters[1..] {
-            arguments.push(self.expression(*of_type)?);
+        for parameter in &callee.parameters[1..] {
+            arguments.push(self.argument(parameter)?);
         }
         self.line(&format!("call {}({})", callee.name, arguments.join(", ")));
         self.frame.knows_position = false;

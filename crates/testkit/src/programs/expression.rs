@@ -24,16 +24,23 @@ impl Generator<'_, '_> {
 
     /// A real that stays within bounds however often it is added up.
     pub(super) fn bounded(&mut self, of_type: Type) -> Result<String> {
+        match bounds(of_type) {
+            Some(_) if of_type == Type::Int => self.expression(of_type),
+            bounds => self.within(of_type, bounds),
+        }
+    }
+
+    /// A value that is within bounds, if there are any.
+    pub(super) fn within(
+        &mut self,
+        of_type: Type,
+        bounds: Option<(&'static str, &'static str)>,
+    ) -> Result<String> {
         let value = self.expression(of_type)?;
-        let (low, high) = match of_type {
-            Type::Number => ("-1000.0", "1000"),
-            Type::Length => ("-2 m", "2000 mm"),
-            Type::Time => ("-500 ms", "0.5 s"),
-            Type::Force => ("-100 N", "1e2 N"),
-            Type::Angle => ("-3.5 rad", "180 deg"),
-            _ => return Ok(value),
-        };
-        Ok(format!("max(min({value}, {high}), {low})"))
+        Ok(match bounds {
+            Some((low, high)) => format!("max(min({value}, {high}), {low})"),
+            None => value,
+        })
     }
 
     fn expression_of(&mut self, of_type: Type, depth: usize) -> Result<String> {
@@ -245,4 +252,17 @@ impl Generator<'_, '_> {
 /// An operand of a sign.
 fn parenthesized(operand: &str) -> String {
     format!("({operand})")
+}
+
+/// Bounds of the values of a type, if they are numbers.
+pub(super) fn bounds(of_type: Type) -> Option<(&'static str, &'static str)> {
+    Some(match of_type {
+        Type::Int => ("-5", "9"),
+        Type::Number => ("-1000.0", "1000"),
+        Type::Length => ("-2 m", "2000 mm"),
+        Type::Time => ("-500 ms", "0.5 s"),
+        Type::Force => ("-100 N", "1e2 N"),
+        Type::Angle => ("-3.5 rad", "180 deg"),
+        Type::Bool | Type::Joints | Type::Item => return None,
+    })
 }

@@ -69,11 +69,20 @@ pub fn declarations(u: &mut Unstructured<'_>, options: Options) -> Result<Vec<St
     Generator::new(u, options).program()
 }
 
+/// A parameter of something that can be called.
+#[derive(Clone, Debug)]
+struct Parameter {
+    name: String,
+    of_type: Type,
+    range: Option<(&'static str, &'static str)>,
+    has_default: bool,
+}
+
 /// Something that can be called.
 #[derive(Clone, Debug)]
 struct Callee {
     name: String,
-    parameters: Vec<Type>,
+    parameters: Vec<Parameter>,
     /// Whether the first parameter bounds a recursion.
     is_recursive: bool,
     /// How many statements a call comes to at the most.

@@ -1,7 +1,7 @@
 //! Statements that do one thing, and which statement comes next.
 
 use super::scope::Type;
-use super::{Callee, Generator, MAX_COST};
+use super::{Callee, Generator, MAX_COST, Parameter};
 use arbitrary::Result;
 
 impl Generator<'_, '_> {
@@ -154,22 +154,39 @@ impl Generator<'_, '_> {
     fn may_call(&self, callee: &Callee) -> bool {
         let fits = self.frame.cost + self.frame.times * callee.cost <= MAX_COST;
         let may_fail = self.options.allow_errors && self.frame.is_replacement;
-        let has_all = !callee.parameters.contains(&Type::Item) || !self.items.is_empty();
+        let is_item = |parameter: &Parameter| parameter.of_type == Type::Item;
+        let has_all = !callee.parameters.iter().any(is_item) || !self.items.is_empty();
         let is_allowed = !callee.has_barrier || !self.frame.in_reversed;
         fits && !may_fail && has_all && is_allowed
     }
 
+    /// Some by their place, then some by name or not at all.
     fn arguments(&mut self, callee: &Callee) -> Result<Vec<String>> {
         let mut arguments = Vec::new();
-        for (index, of_type) in callee.parameters.iter().enumerate() {
+        let mut are_named = false;
+        for (index, parameter) in callee.parameters.iter().enumerate() {
             let is_bound = index == 0 && callee.is_recursive;
-            arguments.push(match (is_bound, of_type) {
+            are_named |= self.one_in(4)?;
+            if parameter.has_default && self.one_in(2)? {
+                are_named = true;
+                continue;
+            }
+            let value = match (is_bound, parameter.of_type) {
                 (true, _) => format!("min({}, 3)", self.expression(Type::Int)?),
                 (false, Type::Number) if self.one_in(4)? => "3".to_owned(),
-                _ => self.expression(*of_type)?,
+                _ => self.argument(parameter)?,
+            };
+            arguments.push(match are_named {
+                true => format!("{}: {value}", parameter.name),
+                false => value,
             });
         }
         Ok(arguments)
+    }
+
+    /// A value for a parameter, in its range.
+    pub(super) fn argument(&mut self, parameter: &Parameter) -> Result<String> {
+        self.within(parameter.of_type, parameter.range)
     }
 
     fn advance(&mut self) -> Result<()> {

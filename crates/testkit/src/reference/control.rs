@@ -137,7 +137,7 @@ impl<'p> Interpreter<'p, '_> {
                     self.respond_after_move(name.value, &mut site)?
                 }
                 StatementKind::Call { name, arguments } => {
-                    let arguments = self.all_values(arguments)?;
+                    let arguments = self.bound(name.value, arguments)?;
                     self.call_and_respond(name.value, &arguments, &mut site)?
                 }
                 StatementKind::Throw(name) => {

@@ -88,7 +88,7 @@ impl<'p> Interpreter<'p, '_> {
     }
 
     /// The same for any number of them.
-    pub(super) fn all_values(&mut self, expressions: &[Expression<'p>]) -> Run<Vec<Value>> {
+    pub(super) fn all_values(&mut self, expressions: &[&Expression<'p>]) -> Run<Vec<Value>> {
         let mut readings = Readings::new();
         for expression in expressions {
             self.read(expression, &mut readings)?;

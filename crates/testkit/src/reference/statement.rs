@@ -5,8 +5,8 @@ use super::value::{Value, binary};
 use super::{Frame, Interpreter, Run, Trap};
 use crate::reference::control::Flow;
 use obverse_syntax::ast::{
-    AssignOperator, BinaryOperator, Block, Expression, IoOperation, Item, Primitive, Sequence,
-    SpeedWord, Statement, StatementKind, VariableDeclaration,
+    Argument, AssignOperator, BinaryOperator, Block, Expression, IoOperation, Item, Primitive,
+    Sequence, SpeedWord, Statement, StatementKind, ValueRange, VariableDeclaration,
 };
 use obverse_workcell::Speed;
 
@@ -42,6 +42,43 @@ impl<'p> Interpreter<'p, '_> {
         Ok(variable.type_name.map_or(value, |type_name| value.declared(type_name.value)))
     }
 
+    /// What a call gives to each parameter: by position, by name, or its default.
+    pub(super) fn bound(&mut self, callee: &str, arguments: &'p [Argument<'p>]) -> Run<Vec<Value>> {
+        let values: Vec<&Expression<'p>> = arguments.iter().map(|one| &one.value).collect();
+        let values = self.all_values(&values)?;
+        let given = |name: &str, position: usize| {
+            let is_it = |(index, argument): (usize, &Argument<'_>)| match argument.name {
+                Some(named) => named.value == name,
+                None => index == position,
+            };
+            arguments.iter().enumerate().position(is_it)
+        };
+        let Some(sequence) = self.names.sequences.get(callee).copied() else {
+            return Ok(values);
+        };
+        let mut bound = Vec::new();
+        for (position, parameter) in sequence.parameters.iter().enumerate() {
+            let value = match (given(parameter.name.value, position), &parameter.default) {
+                (Some(index), _) => values[index],
+                (None, Some(default)) => self.value(default)?,
+                (None, None) => continue,
+            };
+            bound.push(value);
+        }
+        Ok(bound)
+    }
+
+    /// Whether what a parameter is given lies in its range.
+    fn is_in_range(&mut self, range: &'p ValueRange<'p>, value: Value) -> Run<bool> {
+        let (least, most) = (self.value(&range.least)?, self.value(&range.most)?);
+        Ok(match (least, value, most) {
+            (Value::Int(least), Value::Int(value), Value::Int(most)) => {
+                least <= value && value <= most
+            }
+            _ => least.real() <= value.real() && value.real() <= most.real(),
+        })
+    }
+
     /// Call a sequence or an action.
     pub(super) fn call(&mut self, sequence: &'p Sequence<'p>, arguments: &[Value]) -> Run<Flow> {
         let parameters = sequence.parameters.iter().zip(arguments);
@@ -53,7 +90,16 @@ impl<'p> Interpreter<'p, '_> {
             locals: parameters.collect(),
             ..Frame::default()
         };
-        self.within(frame, |interpreter| interpreter.body(&sequence.body))
+        self.within(frame, |interpreter| {
+            for (parameter, value) in sequence.parameters.iter().zip(arguments) {
+                if let Some(range) = &parameter.range
+                    && !interpreter.is_in_range(range, *value)?
+                {
+                    return Err(Trap::Required.into());
+                }
+            }
+            interpreter.body(&sequence.body)
+        })
     }
 
     /// Do something in a frame of its own. Settings that are changed in it hold to its end.
