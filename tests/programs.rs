@@ -48,6 +48,7 @@ const PROGRAMS: &[Expected] = &[
     identical("leak_test.obv"),
     Expected { file: "marking.obv", ends_with_error: &[], back: Back::StopsAt(46) },
     identical("peg_in_hole.obv"),
+    Expected { file: "peg_search.obv", ends_with_error: &[0, 3], back: Back::Identical },
     identical("reversal_policy.obv"),
     Expected { file: "press_fit.obv", ends_with_error: &[], back: Back::StopsAt(76) },
     identical("screws.obv"),

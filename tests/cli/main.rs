@@ -5,6 +5,7 @@ mod commands;
 mod fmt;
 mod imports;
 mod invert;
+mod learn;
 mod moves;
 mod reach;
 mod support;

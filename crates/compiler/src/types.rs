@@ -40,8 +40,6 @@ impl ValueType {
     pub(crate) const NUMBER: Self = Self::Real(Dimension::NONE);
     /// A real in metres.
     pub(crate) const LENGTH: Self = Self::Real(Dimension::LENGTH);
-    /// An angle.
-    pub(crate) const ANGLE: Self = Self::Real(Dimension::ANGLE);
     /// A real in seconds.
     pub(crate) const TIME: Self = Self::Real(Dimension::TIME);
     /// A real in radians.

@@ -6,7 +6,7 @@ use super::place::{Arm, Base, Spot, Way, opposite};
 use super::refusal::refusal;
 use super::walk;
 use obverse_syntax::ast::{Argument, Expression, Heading, Name, StatementKind, Target, Turn};
-use obverse_syntax::span::{Span, Spanned};
+use obverse_syntax::span::Span;
 use std::collections::HashMap;
 
 impl<'p> Inverter<'p> {

@@ -1,0 +1,95 @@
+//! Learning by its command: the file that it writes is used by other commands, follows from the
+//! seed alone, and what is wrong with one is said.
+
+use crate::support::Bench;
+
+const ACTION: &str = "insert_with_spiral_search";
+
+fn learn<'a>(more: &[&'a str]) -> Vec<&'a str> {
+    let first =
+        ["learn", "peg_search.obv", ACTION, "--runs", "240", "--candidates", "12", "--out", "best"];
+    first.iter().chain(more).copied().collect()
+}
+
+#[test]
+fn what_is_learned_is_used_and_better_than_the_defaults() {
+    let bench = Bench::new("learn");
+    let ran = bench.ends(0, &learn(&["--json"]));
+    let lines = ran.json();
+    assert_eq!(lines.iter().filter(|line| line["type"] == "candidate").count(), 12);
+    let evidence = ran.summary()["evidence"].clone();
+    let count = |name: &str| evidence[name].as_u64().expect("a count");
+    assert!(count("successes") > count("successes_of_defaults"), "{evidence}");
+    assert!(count("runs") + count("search_runs") <= 240, "{evidence}");
+
+    let shares = |more: &[&str]| {
+        let trials = ["trials", "peg_search.obv", "--strategy", "stop", "--runs", "100", "--json"];
+        let arguments: Vec<&str> = trials.iter().chain(more).copied().collect();
+        let summary = bench.ends(0, &arguments).summary();
+        summary["strategies"][0]["to_a_person"].as_u64().expect("a count")
+    };
+    let (by_default, learned) = (shares(&[]), shares(&["--parameters", "best"]));
+    assert!(learned < by_default, "{learned} and {by_default} to a person");
+
+    bench.ends(0, &["check", "peg_search.obv", "--parameters", "best"]);
+    let run = ["run", "peg_search.obv", "--seed", "1"];
+    let plain = bench.ends(0, &run);
+    let with: Vec<&str> = run.iter().copied().chain(["--parameters", "best"]).collect();
+    assert_ne!(bench.run(&with).stdout, plain.stdout, "the parameters change the run");
+}
+
+#[test]
+fn what_is_learned_depends_on_the_seed_alone() {
+    let bench = Bench::new("learn_seed");
+    let one = bench.ends(0, &learn(&["--jobs", "1"]));
+    let file = bench.read("best");
+    let five = bench.ends(0, &learn(&["--jobs", "5"]));
+    assert_eq!((one.stdout, file), (five.stdout, bench.read("best")));
+}
+
+#[test]
+fn a_wrong_parameter_file_is_refused() {
+    let bench = Bench::new("learn_files");
+    bench.ends(0, &learn(&[]));
+    let whole = String::from_utf8(bench.read("best")).expect("text");
+    let half = &whole[..whole.len() / 2];
+    let cases: [(&str, String, &str); 7] = [
+        ("torn", half.to_owned(), "not a whole parameter file"),
+        ("foreign", "[arm]\nhome_rad = [0, 0, 0, 0, 0, 0]\n".to_owned(), "not a parameter file"),
+        ("newer", whole.replace("format_version = 1", "format_version = 9"), "version 9"),
+        ("other", whole.replace("peg_search.obv", "tower.obv"), "learned for `tower.obv`"),
+        ("action", whole.replace(ACTION, "screw"), "has no action `screw`"),
+        ("unknown", whole.replace("parameters.pitch", "parameters.tone"), "no parameter `tone`"),
+        ("unit", whole.replace("\"mm\"", "\"m\""), "is in `m`"),
+    ];
+    for (name, text, word) in cases {
+        bench.write(name, text);
+        bench.refuses(&["run", "peg_search.obv", "--parameters", name], &[name, word]);
+    }
+    let value = |value: &str| {
+        let lines = whole.lines().map(|line| match line.starts_with("value = ") {
+            true => format!("value = {value}"),
+            false => line.to_owned(),
+        });
+        lines.collect::<Vec<_>>().join("\n")
+    };
+    bench.write("far", value("5000.0"));
+    bench.refuses(&["run", "peg_search.obv", "--parameters", "far"], &["its range is"]);
+    bench.write("none", value("nan"));
+    bench.refuses(&["run", "peg_search.obv", "--parameters", "none"], &["not finite"]);
+    let twice = ["run", "peg_search.obv", "--parameters", "best", "--parameters", "best"];
+    bench.refuses(&twice, &["a second file"]);
+    bench.refuses(&["run", "peg_search.obv", "--parameters", "nowhere"], &["nowhere"]);
+}
+
+#[test]
+fn what_cannot_be_learned_is_said() {
+    let bench = Bench::new("learn_refused");
+    bench.refuses(&["learn", "peg_search.obv", "insert"], &["no action `insert`"]);
+    bench.refuses(&["learn", "tower.obv", "pick"], &["nothing can be learned of `pick`"]);
+    bench.refuses(&["learn", "peg_search.obv", ACTION, "--runs", "1"], &["--runs is 1"]);
+    bench.refuses(&["learn", "peg_search.obv", ACTION, "--candidates", "0"], &["--candidates"]);
+    let onto = ["learn", "peg_search.obv", ACTION, "--out", "peg_search.obv"];
+    bench.refuses(&onto, &["would overwrite"]);
+    bench.refuses(&["learn", "search_cell.toml", ACTION], &["source text"]);
+}
