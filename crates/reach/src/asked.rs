@@ -8,8 +8,8 @@
 use crate::graph::{NOWHERE, NodeId};
 use crate::search::{Cost, Search, Way};
 use crate::{Horizon, Reach, is_never};
-use obverse_bytecode::{Extent, FaultName, FunctionKind, Module, Recovery, Respond};
-use obverse_isa::{ErrorId, Family, Instr};
+use obverse_bytecode::{Extent, FunctionKind, Module, Recovery, Respond};
+use obverse_isa::{ErrorId, Instr};
 use std::collections::HashMap;
 
 /// The most shortfalls that are told of a module.
@@ -20,7 +20,7 @@ const MAX_SEARCHED: usize = 2_000_000;
 /// A reversal that is asked for and cannot be had, or not always.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Shortfall {
-    /// The instruction that raises the error.
+    /// The instruction that raises the error; of a fault, where it is responded to.
     pub raise: u32,
     /// The error, as an index.
     pub error: u16,
@@ -75,10 +75,11 @@ pub fn shortfalls(module: &Module) -> Vec<Shortfall> {
         }
     }
     for (id, _) in (0..).zip(&module.errors).filter(|(_, error)| !error.faults.is_empty()) {
-        // Almost every act may raise it: the first place will do.
-        let acts = (0_u32..).zip(&module.code).filter(|(_, instr)| may_raise(module, id, instr));
-        let forward = acts.filter(|(pc, _)| !is_replacement(module, *pc));
-        found.extend({ forward }.find_map(|(pc, _)| asked.shortfall(pc, ErrorId(id))));
+        // Almost every act may raise it, and it is gone back from where it is due: the first place
+        // will do.
+        let due = |instr: &Instr| *instr == Instr::ErrorDue { error: ErrorId(id) };
+        let mut sites = (0_u32..).zip(&module.code).filter(|(_, instr)| due(instr));
+        found.extend(sites.find_map(|(pc, _)| asked.from(pc, ErrorId(id), &[pc + 1])));
         if found.len() >= MAX_TOLD {
             break;
         }
@@ -92,25 +93,6 @@ pub fn shortfalls(module: &Module) -> Vec<Shortfall> {
 fn is_raised_again(module: &Module, pc: u32, error: ErrorId) -> bool {
     let before = pc.checked_sub(1).and_then(|before| module.code.get(before as usize));
     before == Some(&Instr::ErrorClear { error })
-}
-
-/// Whether a fault of an instruction may raise an error. Not every kind meets every fault.
-fn may_raise(module: &Module, error: u16, instr: &Instr) -> bool {
-    use FaultName::{EmergencyStop, Missing, ProtectiveStop};
-    let faults = &module.errors[usize::from(error)].faults;
-    match instr.info().family {
-        Family::Kinematic => !faults.is_empty(),
-        Family::Io => {
-            faults.iter().any(|fault| matches!(fault, EmergencyStop | Missing | ProtectiveStop))
-        }
-        _ => false,
-    }
-}
-
-/// Whether an instruction is run in reverse, where nothing is raised.
-fn is_replacement(module: &Module, pc: u32) -> bool {
-    let function = module.function_at(pc).map(|function| &module.functions[function]);
-    function.is_some_and(|function| function.kind == FunctionKind::Replacement)
 }
 
 /// How many actions begin up to each instruction.
@@ -169,13 +151,18 @@ struct Asked<'m> {
 impl<'m> Asked<'m> {
     /// What is in the way of the reversal that an error asks for that is raised here.
     fn shortfall(&mut self, raise: u32, error: ErrorId) -> Option<Shortfall> {
+        let begin = self.begin(raise, self.module.errors[error.index()].respond);
+        self.from(raise, error, &begin)
+    }
+
+    /// The same where it is gone back from before these instructions.
+    fn from(&mut self, raise: u32, error: ErrorId, begin: &[u32]) -> Option<Shortfall> {
         let declared = &self.module.errors[error.index()];
         let Recovery::Reversing(policy) = &declared.recovery else { return None };
-        let begin = self.begin(raise, declared.respond);
         let kind = match policy.extent {
-            Extent::Actions(count) => self.within_actions(&begin, count),
-            Extent::Sequence => self.within_sequence(&begin),
-            Extent::Checkpoint(checkpoint) => self.before_checkpoint(&begin, checkpoint),
+            Extent::Actions(count) => self.within_actions(begin, count),
+            Extent::Sequence => self.within_sequence(begin),
+            Extent::Checkpoint(checkpoint) => self.before_checkpoint(begin, checkpoint),
         };
         kind.map(|kind| Shortfall { raise, error: error.0, kind })
     }

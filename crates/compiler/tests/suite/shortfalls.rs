@@ -112,3 +112,34 @@ fn a_checkpoint_in_the_caller_will_do() {
 fn a_barrier_that_is_passed_over_in_reverse_stops_nothing() {
     check("sequence main { checkpoint ready skip in reverse { wait 1 s } throw begin }", &[]);
 }
+
+/// One that the workcell raises is gone back for where it is responded to: behind the operation or
+/// the advanced move that has met it, in the sequence that does it, and in the cleanup.
+#[test]
+fn an_error_that_a_fault_raises() {
+    let stuck = "error stuck { on protective stop recover by reversing to start of sequence }\n";
+    let slipped = "error slipped { on collision recover by reversing 2 actions }\n";
+    check(&format!("{stuck}sequence main {{ checkpoint ready toggle 1 call glue }}"), &[]);
+    check(
+        &format!(
+            "{stuck}io grip {{ set 0 high }}\nsequence main {{ checkpoint ready\ncall glue\nio grip\n}}"
+        ),
+        &["W0401 5: to the start of the sequence, and is stopped before that [4 0 1]"],
+    );
+    check(
+        &format!(
+            "{stuck}{slipped}advanced move push {{ distance 9 mm down in base }}\n\
+             sequence main {{ checkpoint ready\nwait 1 s\ncall glue\nadvance push\n}}"
+        ),
+        &[
+            "W0401 7: to the start of the sequence, and is stopped before that [6 0 1]",
+            "W0401 7: 2 actions, and may be stopped after 1 [6 0 2]",
+        ],
+    );
+    check(
+        &format!(
+            "{stuck}sequence main {{ checkpoint ready }}\ncleanup {{\nbarrier \"b\"\nset 0 low\n}}"
+        ),
+        &["W0401 5: to the start of the sequence, and is stopped before that [4 1]"],
+    );
+}
