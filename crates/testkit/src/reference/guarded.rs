@@ -95,7 +95,7 @@ impl<'p> Interpreter<'p, '_> {
 
     fn numbers(&mut self, clauses: &Clauses<'p>, way: Way<'p>) -> Run<Numbers> {
         let written = [way.angle, way.distance, clauses.limit];
-        let all: Vec<Expression<'p>> = written.into_iter().flatten().cloned().collect();
+        let all: Vec<&Expression<'p>> = written.into_iter().flatten().collect();
         let mut values = self.all_values(&all)?.into_iter();
         let mut next = |written: Option<_>| written.and_then(|_| values.next()).map(Value::real);
         Ok(Numbers {

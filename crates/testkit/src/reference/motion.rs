@@ -26,7 +26,7 @@ impl<'p> Interpreter<'p, '_> {
                 self.go(goal, Path::Linear, None)?;
             }
             Target::Turned(turn) => {
-                let amounts: Vec<_> = turn.amounts().cloned().collect();
+                let amounts: Vec<_> = turn.amounts().collect();
                 let mut by = [0.0; 2];
                 for (number, value) in by.iter_mut().zip(self.all_values(&amounts)?) {
                     *number = value.real();
