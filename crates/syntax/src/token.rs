@@ -98,7 +98,8 @@ tokens! {
     }
     free {
         Action "action" Actions "actions" Advanced "advanced" Advancing "advancing"
-        After "after" Allow "allow" Always "always" At "at" Backward "backward" Backwards "backwards" Base "base" By "by"
+        After "after" Allow "allow" Always "always" At "at"
+        Backward "backward" Backwards "backwards" Base "base" By "by"
         Cell "cell" Cleanup "cleanup" Collision "collision" Continue "continue" Current "current"
         Doubling "doubling" Down "down" Emergency "emergency" Ending "ending" Entered "entered"
         Error "error" Escalating "escalating" Failure "failure" Fast "fast" Fatal "fatal"
