@@ -152,6 +152,32 @@ fn every_program_goes_there_and_back() {
     }
 }
 
+/// The programs for trials, each in a folder of its own with its workcell: written as they should
+/// be, and, where nothing goes wrong, through without an error.
+#[test]
+fn every_case_is_correct_and_goes_through() {
+    let cases = fs::read_dir(folder().join("cases")).expect("the folder of cases");
+    let mut names: Vec<String> = cases
+        .map(|entry| entry.expect("an entry").file_name().into_string().expect("a plain name"))
+        .collect();
+    names.sort();
+    assert!(names.contains(&"cover".to_owned()), "{names:?}");
+    for name in names {
+        let file = format!("cases/{name}/{name}.obv");
+        let checked = summary("check", &file, &[]);
+        assert_eq!((&checked["outcome"], &checked["warnings"]), (&"correct".into(), &0.into()));
+        let path = folder().join(&file);
+        let formatted = Command::new(env!("CARGO_BIN_EXE_obverse"))
+            .args(["fmt", "--check"])
+            .arg(path)
+            .output()
+            .expect("the binary");
+        assert!(formatted.status.success(), "{file} is laid out otherwise");
+        let run = summary("run", &file, &["--seed", "0"]);
+        assert_eq!(run["outcome"], "finished", "{file}: {run}");
+    }
+}
+
 /// What of the language each program is there for.
 #[test]
 fn the_language_is_shown() {
@@ -192,6 +218,7 @@ fn the_language_is_shown() {
         ("warm_up.obv", "reversible always"),
         ("warm_up.obv", "position centre"),
         ("warm_up.obv", "random("),
+        ("cases/cover/cover.obv", "turn 550 deg"),
     ];
     for (file, words) in shown {
         let text = source(file);

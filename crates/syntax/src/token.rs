@@ -97,8 +97,9 @@ tokens! {
         Toggle "toggle" True "true" Until "until" Var "var" Wait "wait" While "while"
     }
     free {
-        Action "action" Actions "actions" Advanced "advanced" Advancing "advancing" After "after" Allow "allow"
-        Always "always" At "at" Backward "backward" Backwards "backwards" Base "base" By "by"
+        Action "action" Actions "actions" Advanced "advanced" Advancing "advancing"
+        After "after" Allow "allow" Always "always" At "at"
+        Backward "backward" Backwards "backwards" Base "base" By "by"
         Cell "cell" Cleanup "cleanup" Collision "collision" Continue "continue" Current "current"
         Doubling "doubling" Down "down" Emergency "emergency" Ending "ending" Entered "entered"
         Error "error" Escalating "escalating" Failure "failure" Fast "fast" Fatal "fatal"
@@ -114,8 +115,8 @@ tokens! {
         Severity "severity" Short "short" Singularity "singularity" Slow "slow" Slower "slower"
         Speed "speed" Start "start" Stop "stop" Stopped "stopped" Straight "straight"
         Succeeds "succeeds" Success "success" Tcp "tcp" Then "then" Times "times" Tool "tool"
-        ToolMount "toolmount" Turn "turn" Up "up" Using "using" Very "very" Warning "warning" When "when"
-        With "with" X "x" Y "y" Z "z"
+        ToolMount "toolmount" Turn "turn" Up "up" Using "using" Very "very"
+        Warning "warning" When "when" With "with" X "x" Y "y" Z "z"
     }
     signs {
         OpenBrace "{" CloseBrace "}" OpenParenthesis "(" CloseParenthesis ")" OpenBracket "["

@@ -121,6 +121,9 @@ fn without_starts(commands: &[Command]) -> Vec<Command> {
                     Goal::Displaced { from: nowhere, distance_m, axis, frame }
                 }
                 Goal::Offset { by_m, frame, .. } => Goal::Offset { from: nowhere, by_m, frame },
+                Goal::Turned { angle_rad, advance_m, axis, frame, .. } => {
+                    Goal::Turned { from: nowhere, angle_rad, advance_m, axis, frame }
+                }
                 goal => goal,
             };
             Command::Execute(Motion { goal, ..motion })

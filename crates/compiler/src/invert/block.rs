@@ -65,7 +65,7 @@ pub(super) enum Summary<'p> {
     /// It goes some way.
     Strays,
     /// It goes to a place with a name first, and ends at another.
-    Goes(FirstMove<'p>, Spot<'p>),
+    Goes(Box<FirstMove<'p>>, Spot<'p>),
     /// It has been refused.
     Refused,
 }
@@ -157,7 +157,7 @@ impl<'p> Inverter<'p> {
         let is_refused = is_refused || self.refusals.len() > refused_before;
         let summary = match (&self.first_move, self.arm.spot()) {
             _ if is_refused => Summary::Refused,
-            (Some(first), Some(last)) => Summary::Goes(first.clone(), last.clone()),
+            (Some(first), Some(last)) => Summary::Goes(Box::new(first.clone()), last.clone()),
             (None, _) if self.arm.is_same(&Arm::new()) => Summary::Stays,
             _ => Summary::Strays,
         };

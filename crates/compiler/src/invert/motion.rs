@@ -97,7 +97,7 @@ impl<'p> Inverter<'p> {
         };
         let mut call = Emitted::new(call, span);
         let (first, last) = match self.summaries.get(name.value) {
-            Some(Summary::Goes(first, last)) => (first.clone(), last.clone()),
+            Some(Summary::Goes(first, last)) => (FirstMove::clone(first), last.clone()),
             Some(Summary::Strays) => {
                 self.arm.stray(span);
                 return vec![call];

@@ -47,10 +47,8 @@ fn a_guarded_turn_has_succeeded_unless_it_was_stopped() {
         push.local $force
         push.const 12.0
         real.le
-        jump.if +3
+        jump.if +2
         error.raise tight
-        jump +3
-        land -3
         join -2
         return
         ",
@@ -80,7 +78,10 @@ fn a_turn_is_not_led_back_but_by_reversing() {
         )
     };
     for (clauses, expected) in [
-        ("on success { return to initial position }", r#"E0312 3:14 "return to initial position""#),
+        (
+            "on success { return to initial position }; on failure { throw e }",
+            r#"E0312 3:14 "return to initial position""#,
+        ),
         (
             "on failure { return to initial position; throw e }",
             r#"E0312 3:14 "return to initial position""#,
