@@ -168,11 +168,7 @@ pub(crate) fn quietly(path: &Path) -> Result<Program, Problem> {
     verified(path, module, source)
 }
 
-fn verified(
-    path: &Path,
-    module: Module,
-    source: Option<Diagnosed>,
-) -> Result<Program, Problem> {
+fn verified(path: &Path, module: Module, source: Option<Diagnosed>) -> Result<Program, Problem> {
     let verified = verify(module).map_err(|errors| {
         Problem::several(errors.iter().map(|error| Message::of_file(path, error)).collect())
     })?;

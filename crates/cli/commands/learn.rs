@@ -285,7 +285,11 @@ impl Found {
         let (chance, interval) = match standing.estimate {
             Some(found) => (
                 format!("{:.1} %", 100.0 * found.chance),
-                format!("{:.1} to {:.1} %", 100.0 * found.interval.low, 100.0 * found.interval.high),
+                format!(
+                    "{:.1} to {:.1} %",
+                    100.0 * found.interval.low,
+                    100.0 * found.interval.high
+                ),
             ),
             None => ("-".to_owned(), "-".to_owned()),
         };
@@ -343,9 +347,8 @@ impl Found {
 /// A table whose columns are right-aligned, but for the last.
 fn drawn(rows: &[Vec<String>]) -> String {
     let columns = rows.first().map_or(0, Vec::len);
-    let width = |column: usize| {
-        rows.iter().map(|row| row[column].chars().count()).max().unwrap_or(0)
-    };
+    let width =
+        |column: usize| rows.iter().map(|row| row[column].chars().count()).max().unwrap_or(0);
     let widths: Vec<usize> = (0..columns).map(width).collect();
     let line = |row: &Vec<String>| {
         let cells = row.iter().zip(&widths).enumerate().map(|(column, (cell, &width))| {

@@ -32,8 +32,8 @@ mod types;
 mod units;
 mod uses;
 
-pub use parameters::{Action, Defaults, Parameter};
 pub use load::{Loader, MAX_IMPORT_DEPTH, MAX_IMPORTED};
+pub use parameters::{Action, Defaults, Parameter};
 
 use allow::Allows;
 use check::Checked;
@@ -120,8 +120,7 @@ fn compile_loaded(loaded: &Loaded, defaults: &Defaults) -> Built {
     let parsed = merge::parse(loaded);
     let is_whole = parsed.diagnostics.iter().all(|found| found.severity != Severity::Error);
     let reports = Reports::new(is_whole, Allows::of(sources, &parsed.program));
-    let (module, actions, mut reports) =
-        compile_tree(sources, &parsed.program, defaults, reports);
+    let (module, actions, mut reports) = compile_tree(sources, &parsed.program, defaults, reports);
     if let Some(module) = &module {
         shortfall::check(sources, &parsed.program, module, &mut reports);
     }

@@ -182,7 +182,9 @@ impl Uses {
     fn control(&mut self, kind: &StatementKind) {
         match kind {
             StatementKind::Wait(time) => self.expression(time),
-            StatementKind::Requires(condition, _) | StatementKind::Demand(condition, _) => self.expression(condition),
+            StatementKind::Requires(condition, _) | StatementKind::Demand(condition, _) => {
+                self.expression(condition)
+            }
             StatementKind::WaitInput { timeout, .. } => self.expression(timeout),
             StatementKind::If { condition, ending_when, .. } => {
                 self.expression(condition);

@@ -128,7 +128,8 @@ mod tests {
     #[test]
     fn values_are_short() {
         let axis = axis(5.0, 60.0, false);
-        let is_short = |point: &Vec<f64>| (point[0] * 10.0 - (point[0] * 10.0).round()).abs() < 1e-9;
+        let is_short =
+            |point: &Vec<f64>| (point[0] * 10.0 - (point[0] * 10.0).round()).abs() < 1e-9;
         assert!(candidates(&[axis], 40).iter().all(is_short));
     }
 }

@@ -347,8 +347,8 @@ impl<'s, 'k> Lexer<'s, 'k> {
             return Token::BadQuantity;
         }
         // In brackets no statement begins, and what follows is the default of a parameter.
-        let is_assigned = !self.nesting.is_in_expression()
-            && is_before_assignment(&word_and_on[word.len()..]);
+        let is_assigned =
+            !self.nesting.is_in_expression() && is_before_assignment(&word_and_on[word.len()..]);
         if word.is_empty() || is_assigned {
             return token;
         }

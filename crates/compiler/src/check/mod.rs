@@ -38,8 +38,8 @@ use obverse_syntax::codes::Code;
 use obverse_syntax::diagnostic::Diagnostic;
 use obverse_syntax::sources::Sources;
 use obverse_syntax::span::Span;
-use std::collections::{BTreeSet, HashMap};
 use parameters::Range;
+use std::collections::{BTreeSet, HashMap};
 use still::Movers;
 
 pub(crate) use program::{Checked, check};

@@ -141,7 +141,9 @@ impl<'s> Checker<'s> {
             .collect();
         let mut statements = Vec::new();
         for (index, parameter) in ranged {
-            let (Some(range), Ok(local)) = (&parameter.range, u8::try_from(index)) else { continue };
+            let (Some(range), Ok(local)) = (&parameter.range, u8::try_from(index)) else {
+                continue;
+            };
             let reason =
                 format!("{} requires {} in {}", self.frame.name, parameter.name, range.text);
             let reason = self.reason(Spanned::new(&reason, range.span));

@@ -22,9 +22,9 @@ impl Lower<'_> {
 
     fn statement(&mut self, statement: &Statement) {
         use StatementKind::{
-            Advance, Barrier, Break, Call, Checkpoint, Demand, For, Fork, If, Io, Irreversible, Kept, Loop,
-            Move, Output, Remember, Requires, Return, Reversed, Set, SetFor, Store, Throw, Update,
-            Wait, WaitInput, While,
+            Advance, Barrier, Break, Call, Checkpoint, Demand, For, Fork, If, Io, Irreversible,
+            Kept, Loop, Move, Output, Remember, Requires, Return, Reversed, Set, SetFor, Store,
+            Throw, Update, Wait, WaitInput, While,
         };
         let due: Vec<ErrorId> = self.due(&statement.kind);
         if !due.is_empty() {

@@ -4,8 +4,8 @@ use super::piece::{Column, Glue, Member};
 use super::writer::{Style, Writer};
 use crate::ast::{
     Allow, Behaviour, Bound, Change, Continuation, Depth, ErrorClause, Expression, Extent, Item,
-    JointsDeclaration, Keyframe, MoveClause, Name, Otherwise, Parameter, Recovery, Respond, Sequence,
-    Severity, SignalKind, ValueRange,
+    JointsDeclaration, Keyframe, MoveClause, Name, Otherwise, Parameter, Recovery, Respond,
+    Sequence, Severity, SignalKind, ValueRange,
 };
 use crate::span::Spanned;
 

@@ -3,8 +3,8 @@
 use super::piece::{Column, Glue};
 use super::writer::{Style, Writer};
 use crate::ast::{
-    Argument, AssignOperator, Block, Expression, FrameWord, Heading, Primitive, ReverseParameter, Signal,
-    SpeedWord, Statement, StatementKind, Target, VariableDeclaration,
+    Argument, AssignOperator, Block, Expression, FrameWord, Heading, Primitive, ReverseParameter,
+    Signal, SpeedWord, Statement, StatementKind, Target, VariableDeclaration,
 };
 use crate::span::{Span, Spanned};
 

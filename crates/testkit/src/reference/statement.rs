@@ -5,8 +5,8 @@ use super::value::{Value, binary};
 use super::{Frame, Interpreter, Run, Trap};
 use crate::reference::control::Flow;
 use obverse_syntax::ast::{
-    Argument, AssignOperator, BinaryOperator, Block, Expression, IoOperation, Item, Primitive, Sequence,
-    SpeedWord, Statement, StatementKind, ValueRange, VariableDeclaration,
+    Argument, AssignOperator, BinaryOperator, Block, Expression, IoOperation, Item, Primitive,
+    Sequence, SpeedWord, Statement, StatementKind, ValueRange, VariableDeclaration,
 };
 use obverse_workcell::Speed;
 
