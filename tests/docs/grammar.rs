@@ -221,13 +221,15 @@ struct Token<'t> {
 
 fn tokens(text: &str) -> Vec<Token<'_>> {
     let mut tokens = Vec::new();
+    let mut brackets = 0;
     for line in text.lines() {
         let mut rest = line.trim_start();
         while !rest.is_empty() && !rest.starts_with("//") {
             let is_after_bracket = tokens.last().is_some_and(|token: &Token<'_>| token.text == "]");
             let has_bracket_before = is_after_bracket && rest.len() < line.trim_start().len();
-            let (kind, length) = token(rest, has_bracket_before);
+            let (kind, length) = token(rest, has_bracket_before, brackets > 0);
             let (text, after) = rest.split_at(length);
+            brackets += i32::from(text == "(") - i32::from(text == ")");
             tokens.push(Token { kind, text });
             rest = after.trim_start();
         }
@@ -236,7 +238,7 @@ fn tokens(text: &str) -> Vec<Token<'_>> {
 }
 
 /// The kind and the length of the token that a text begins with.
-fn token(text: &str, may_be_unit: bool) -> (&'static str, usize) {
+fn token(text: &str, may_be_unit: bool, in_brackets: bool) -> (&'static str, usize) {
     let is_of_word = |c: char| c.is_ascii_alphanumeric() || c == '_';
     let span = |text: &str, is_part: &dyn Fn(char) -> bool| {
         text.find(|c: char| !is_part(c)).unwrap_or(text.len())
@@ -248,13 +250,13 @@ fn token(text: &str, may_be_unit: bool) -> (&'static str, usize) {
         let (length, is_real) = number(text);
         let after = &text[length..];
         let blanks = after.len() - after.trim_start().len();
-        return match unit(after.trim_start()) {
+        return match unit(after.trim_start(), in_brackets) {
             Some(unit) => ("QUANTITY", length + blanks + unit),
             None if is_real => ("REAL", length),
             None => ("INTEGER", length),
         };
     }
-    if let Some(length) = unit(text).filter(|_| may_be_unit) {
+    if let Some(length) = unit(text, in_brackets).filter(|_| may_be_unit) {
         return ("UNIT", length);
     }
     if text.starts_with(is_of_word) {
@@ -282,7 +284,7 @@ fn number(text: &str) -> (usize, bool) {
 }
 
 /// The length of the unit that a text begins with.
-fn unit(text: &str) -> Option<usize> {
+fn unit(text: &str, in_brackets: bool) -> Option<usize> {
     let ends = |unit: &&&str| {
         let after = text.strip_prefix(**unit);
         after.is_some_and(|after| {
@@ -290,10 +292,10 @@ fn unit(text: &str) -> Option<usize> {
         })
     };
     let found = UNITS.iter().filter(ends).map(|unit| unit.len()).max()?;
-    // Before these a unit is a name.
+    // Before these a unit is a name, where a statement can begin.
     let after = text[found..].trim_start();
     let is_name = after.starts_with('=') && !after.starts_with("==")
         || after.starts_with("+=")
         || after.starts_with("-=");
-    (!is_name).then_some(found)
+    (in_brackets || !is_name).then_some(found)
 }
