@@ -20,20 +20,19 @@ pub const ATTEMPTS_MAX: usize = 16;
 /// enough before anything is known.
 const PRIOR_HELPED: f64 = 1.0;
 const PRIOR_FAILED: f64 = 1.0;
-/// The weight in incidents of what is believed of the first depth before anything is known; of each
-/// further depth half of the one before.
+/// The weight in incidents of what is believed of the first depth before anything is known; of a
+/// further one that divided by the depth.
 const PRIOR_FIRST: f64 = 1.0;
 /// What is believed of going back never helping, before anything is known.
-const PRIOR_NEVER: f64 = 0.2;
-/// How much longer a nearer depth may be expected to take than the best, as a share, where nothing
-/// is known and nothing was tried, and how many incidents are needed for half of that: where far
-/// ones have helped, nobody knows yet whether near ones would.
+const PRIOR_NEVER: f64 = 0.1;
+/// How much longer a nearer depth may be expected to take than the best, as a share, where it was
+/// never tried, and how many attempts at it halve that: where far ones have helped nobody knows
+/// whether near ones would, until they have been tried.
 const CURIOSITY: f64 = 0.3;
-const FEW: f64 = 20.0;
-/// How many attempts in vain say that there is no help, and how many incidents that were tried out
-/// so far or recovered from must be known before that is believed.
-const TRIED_OUT: usize = 4;
-const TRIED_OUT_MIN: u64 = 20;
+const FEW: f64 = 5.0;
+/// How many incidents must be known in which going back as far as can be was in vain, before it is
+/// believed that going back may not help.
+const IN_VAIN_MIN: u64 = 5;
 /// Rounds of expectation maximisation: the shares settle to a percent in fewer.
 const ROUNDS: usize = 24;
 /// The version of the text.
@@ -102,14 +101,28 @@ impl Memory {
         known.map_or(0, |known| known.times.values().sum())
     }
 
-    /// How many of them were recovered from, or not although much was tried: who gives up early has
-    /// not learned that going on would have been in vain.
-    fn tried_out(&self, error: &str, place: &str) -> u64 {
-        let known = self.places.get(&(error.to_owned(), place.to_owned()));
-        let is_it = |kind: &Kind| kind.is_enough || kind.depths.len() >= TRIED_OUT;
-        known.map_or(0, |known| {
-            known.times.iter().filter(|(kind, _)| is_it(kind)).map(|(_, times)| times).sum()
-        })
+    /// How many attempts are known that say something of a depth: those of it, and those that went
+    /// further in vain, as it would have been.
+    fn tried(&self, error: &str, place: &str, depth: usize) -> f64 {
+        let Some(known) = self.places.get(&(error.to_owned(), place.to_owned())) else {
+            return 0.0;
+        };
+        let in_kind = |kind: &Kind| {
+            let failed = kind.depths.len() - usize::from(kind.is_enough);
+            let (failed, helped) = kind.depths.split_at(failed);
+            let in_vain = failed.iter().filter(|tried| **tried >= depth).count();
+            in_vain + helped.iter().filter(|tried| **tried == depth).count()
+        };
+        known.times.iter().map(|(kind, times)| in_kind(kind) as f64 * *times as f64).sum()
+    }
+
+    /// How many of them were not recovered from, although an attempt went back so far: who gives up
+    /// before has not learned that going on would have been in vain.
+    fn in_vain(&self, error: &str, place: &str, furthest: usize) -> u64 {
+        let Some(known) = self.places.get(&(error.to_owned(), place.to_owned())) else { return 0 };
+        let went_so_far = |kind: &Kind| kind.depths.iter().any(|depth| *depth >= furthest);
+        let is_it = |kind: &Kind| !kind.is_enough && went_so_far(kind);
+        known.times.iter().filter(|(kind, _)| is_it(kind)).map(|(_, times)| times).sum()
     }
 
     /// Remember what became of an incident: how far each attempt went back, and whether the last
@@ -146,11 +159,14 @@ impl Memory {
         for &depth in tried {
             belief.fail(depth);
         }
-        let curiosity = if tried.is_empty() { CURIOSITY } else { 0.0 };
-        let slack = 1.0 + curiosity * FEW / (FEW + known as f64);
+        let slack = |depth: usize| match tried {
+            [] => 1.0 + CURIOSITY * FEW / (FEW + self.tried(error, place, depth)),
+            _ => 1.0,
+        };
         let best = belief.best(costs, slack);
         let is_worth_it = best.is_some_and(|(expected_s, _)| expected_s < costs.give_up_s);
-        let goes_on = is_worth_it || self.tried_out(error, place) < TRIED_OUT_MIN;
+        let furthest = costs.by_depth_s.len().min(DEPTH_MAX);
+        let goes_on = is_worth_it || self.in_vain(error, place, furthest) < IN_VAIN_MIN;
         let best = best.filter(|_| goes_on);
         let (expected_s, actions) = match best {
             Some((expected_s, depth)) => (expected_s, Some(depth)),
@@ -177,12 +193,10 @@ struct Belief {
 }
 
 fn prior() -> Numbers {
-    let mut weights = [PRIOR_FIRST; DEPTH_MAX + 1];
-    for depth in 1..DEPTH_MAX {
-        weights[depth] = 0.5 * weights[depth - 1];
-    }
-    weights[DEPTH_MAX] = PRIOR_NEVER;
-    weights
+    std::array::from_fn(|index| match index {
+        DEPTH_MAX => PRIOR_NEVER,
+        _ => PRIOR_FIRST / (index + 1) as f64,
+    })
 }
 
 fn normal(mut shares: Numbers) -> Numbers {
@@ -190,6 +204,9 @@ fn normal(mut shares: Numbers) -> Numbers {
     shares.iter_mut().for_each(|share| *share /= whole);
     shares
 }
+
+/// What incidents of a kind say of each depth: see [`attempts`].
+type AllAttempts = [Option<(f64, f64)>; DEPTH_MAX + 1];
 
 /// What incidents of a kind say of a depth, if that is the least that is enough: how many attempts
 /// that went so far have failed, and whether one has helped; none if one has helped that did not.
@@ -212,7 +229,7 @@ impl Belief {
             helped: [PRIOR_HELPED; DEPTH_MAX + 1],
             failed: [PRIOR_FAILED; DEPTH_MAX + 1],
         };
-        let kinds: Vec<([Option<(f64, f64)>; DEPTH_MAX + 1], f64)> = times
+        let kinds: Vec<(AllAttempts, f64)> = times
             .iter()
             .map(|(kind, times)| {
                 (std::array::from_fn(|index| attempts(kind, index)), *times as f64)
@@ -238,7 +255,7 @@ impl Belief {
     }
 
     /// How likely each depth is the least that is enough and an incident has come to this.
-    fn explain(&self, attempts: &[Option<(f64, f64)>; DEPTH_MAX + 1]) -> Numbers {
+    fn explain(&self, attempts: &AllAttempts) -> Numbers {
         std::array::from_fn(|index| {
             let Some((failed, helped)) = attempts[index] else { return 0.0 };
             let helps = self.helps(index);
@@ -274,12 +291,14 @@ impl Belief {
     /// The least expected time to be past the error, and the depth to try first for it; none where
     /// there is none. Of those that take hardly longer (by a factor) it is the nearest, from which
     /// most is learned.
-    fn best(&self, costs: Costs<'_>, slack: f64) -> Option<(f64, usize)> {
+    fn best(&self, costs: Costs<'_>, slack: impl Fn(usize) -> f64) -> Option<(f64, usize)> {
         let depths = 1..=costs.by_depth_s.len().min(DEPTH_MAX);
         let times_s: Vec<f64> = depths.map(|first| self.expected_s(first, costs)).collect();
         let least_s = times_s.iter().copied().fold(f64::INFINITY, f64::min);
-        let is_it = |time_s: &f64| time_s.is_finite() && *time_s <= least_s * slack;
-        let index = times_s.iter().position(is_it)?;
+        let is_it = |(index, time_s): (usize, &f64)| {
+            time_s.is_finite() && *time_s <= least_s * slack(index + 1)
+        };
+        let index = times_s.iter().enumerate().position(is_it)?;
         Some((times_s[index], index + 1))
     }
 
