@@ -2,8 +2,9 @@
 
 use criterion::{Criterion, Throughput, criterion_group, criterion_main};
 use obverse_benches::program;
+use obverse_recovery::Memory;
 use obverse_sim::Cell;
-use obverse_trials::machine::{Memory, Terms};
+use obverse_trials::machine::Terms;
 use obverse_trials::{MachineCase, Plan, Shard, Strategy};
 use std::convert::Infallible;
 use std::hint::black_box;
