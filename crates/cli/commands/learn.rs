@@ -135,8 +135,8 @@ fn axes(action: &Action) -> std::result::Result<Vec<Axis>, Problem> {
     let name = &action.name;
     match axes.len() {
         0 => Err(Problem::new(format!(
-            "nothing can be learned of `{name}`: no parameter has a range and a default and is left \
-             out by a call"
+            "nothing can be learned of `{name}`: no parameter has a range and a default and is \
+             left out by a call"
         ))),
         many if many > space::MAX_AXES => Err(Problem::new(format!(
             "`{name}` leaves {many} parameters open, and at most {} are learned at a time; give \

@@ -183,7 +183,7 @@ impl Uses {
         match kind {
             StatementKind::Wait(time) => self.expression(time),
             StatementKind::Requires(condition, _) | StatementKind::Demand(condition, _) => {
-                self.expression(condition)
+                self.expression(condition);
             }
             StatementKind::WaitInput { timeout, .. } => self.expression(timeout),
             StatementKind::If { condition, ending_when, .. } => {

@@ -167,3 +167,18 @@ sequence main {{ advance push }}"
     assert_eq!(bad.last.draws, 4, "two a repetition");
     assert_eq!(bad.last.joints, bad.history[0].joints);
 }
+
+#[test]
+fn parameters_are_given_by_name_and_by_default_and_lie_in_their_ranges() {
+    let after_call = |call: &str| {
+        let action = "action a(n: int in 1 to 5 = 3, m: int = 10) { x = n * m }";
+        outcome(&format!("var x = 0\n{action}\nsequence main {{ var z = 7 {call} }}"))
+    };
+    for (call, x) in [("call a", 30), ("call a(m: 2, n: 1)", 2), ("call a(5, m: 1)", 5)] {
+        let outcome = after_call(call);
+        assert_eq!((int(&outcome, "x"), outcome.ending), (x, Ending::Finished), "{call}");
+    }
+    for call in ["call a(z)", "call a(n: z - 7)"] {
+        assert_eq!(after_call(call).ending, Ending::Trap(Trap::Required), "{call}");
+    }
+}

@@ -252,9 +252,9 @@ macro_rules! errors {
                sequence main { call pick(peg) }\n\
                action pick(part: item) { move to part.grasp }"
     OutsideRange "E0212" "a value outside the range of its parameter"
-        why "A parameter may say between which values it lies, both included. Its default and every \
-             value that is known before the program runs are held to that here; a value that is \
-             computed is looked at when the action begins, and traps."
+        why "A parameter may say between which values it lies, both included. Its default and \
+             every value that is known before the program runs are held to that here; a value \
+             that is computed is looked at when the action begins, and traps if it is outside."
         wrong "action lift(height: length in 5 mm to 60 mm = 20 mm) { move height up }\n\
                sequence main { call lift(height: 80 mm) }"
         right "action lift(height: length in 5 mm to 60 mm = 20 mm) { move height up }\n\
