@@ -104,7 +104,7 @@ impl<'t> Trial<'t> {
             }
             match self.step(Direction::Forward) {
                 Ok(()) | Err(Stop::Raised { .. } | Stop::Due { .. }) => {
-                    self.history.push(self.picture())
+                    self.history.push(self.picture());
                 }
                 Err(stop) => return Err(format!("on the way to it: {stop:?}")),
             }

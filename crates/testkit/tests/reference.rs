@@ -176,7 +176,7 @@ fn parameters_are_given_by_name_and_by_default_and_lie_in_their_ranges() {
     };
     for (call, x) in [("call a", 30), ("call a(m: 2, n: 1)", 2), ("call a(5, m: 1)", 5)] {
         let outcome = after_call(call);
-        assert_eq!((outcome.ending, int(&outcome, "x")), (Ending::Finished, x), "{call}");
+        assert_eq!((int(&outcome, "x"), outcome.ending), (x, Ending::Finished), "{call}");
     }
     for call in ["call a(z)", "call a(n: z - 7)"] {
         assert_eq!(after_call(call).ending, Ending::Trap(Trap::Required), "{call}");
