@@ -118,19 +118,31 @@ fn reach_is_met() {
     assert!(met * 100 >= said * 75, "of {said} horizons that points may have, {met} were met");
 }
 
-/// The same of programs of the language.
-#[test]
-fn reach_of_programs_is_met() {
+/// The same of programs of the language, in which errors lead on in every way; of a hundred that are
+/// said so many are met at the least.
+fn reach_of_programs_is_met_of(with_forks: bool, least: usize) {
     let (mut met, mut said) = (0, 0);
-    for seed in 0..200 {
-        let found = reach_laws::met_and_said_of_programs(&mut Unstructured::new(&bytes(seed)));
+    for seed in 0..40 {
+        let bytes = bytes(500 + seed);
+        let found =
+            reach_laws::met_and_said_of_programs(&mut Unstructured::new(&bytes), with_forks);
         let Ok((some, all)) = found else { continue };
-        assert!(some.is_subset(&all), "LAW_SEED={seed}");
+        assert!(some.is_subset(&all), "seed {seed}");
         met += some.len();
         said += all.len();
     }
-    println!("{met} of {said}");
-    assert!(met * 100 >= said * 90, "of {said} horizons that points may have, {met} were met");
+    assert!(met * 100 >= said * least, "of {said} horizons that points may have, {met} were met");
+}
+
+#[test]
+fn reach_of_programs_is_met() {
+    reach_of_programs_is_met_of(false, 97);
+}
+
+/// In what order branches take their turns is not followed.
+#[test]
+fn reach_of_programs_with_forks_is_met() {
+    reach_of_programs_is_met_of(true, 80);
 }
 
 #[test]

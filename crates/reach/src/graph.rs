@@ -303,6 +303,9 @@ impl Builder<'_> {
 
     /// What a jump takes along.
     fn jumped(&self, pass: &Pass, from: u32) -> ByFlags {
+        if is_surely_entered(self.module, from as usize) {
+            return UNREACHED;
+        }
         let before = self.point(pass, from - 1);
         match self.flags.touch(self.module, from as usize) {
             Touch::JumpsIf(flag, value) => only(before, flag, value),
@@ -395,6 +398,18 @@ impl Builder<'_> {
             }
             self.unless_nowhere(pass, pc, inside, Node::Block { before, inside })
         })
+    }
+}
+
+/// Whether this begins a counted loop whose bounds are written there, and which has a round.
+fn is_surely_entered(module: &Module, at: usize) -> bool {
+    let instr = &module.code[at];
+    if !matches!(instr, Instr::ForEnter { .. }) || instr.prefix() != 2 {
+        return false;
+    }
+    match at.checked_sub(2).map(|first| &module.code[first..at]) {
+        Some([Instr::PushInt { value: first }, Instr::PushInt { value: last }]) => first <= last,
+        _ => false,
     }
 }
 

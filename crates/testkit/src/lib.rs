@@ -21,6 +21,7 @@ pub mod machine_laws;
 pub mod preflight_laws;
 pub mod programs;
 pub mod reach_laws;
+pub mod reach_programs;
 pub mod recovery_laws;
 pub mod reference;
 pub mod wait_laws;

@@ -3,7 +3,7 @@
 //! [`machine_laws`](crate::machine_laws) are, and panics where it does not hold.
 
 use crate::code::{self, Options};
-use crate::{Ledger, fork_code, programs};
+use crate::{Ledger, fork_code, programs, reach_programs};
 use arbitrary::{Result, Unstructured};
 use obverse_bytecode::{Verified, verify};
 use obverse_reach::{Horizon, MAX_KEPT, Reach};
@@ -92,13 +92,12 @@ pub fn met_and_said(u: &mut Unstructured<'_>) -> Result<MetAndSaid> {
     Ok(met_by_runs(&verified(module), 20))
 }
 
-/// The same of a random program of the language.
+/// The same of a random program in which errors lead on in every way, with forks or without.
 ///
 /// # Errors
 /// Those of the randomness.
-pub fn met_and_said_of_programs(u: &mut Unstructured<'_>) -> Result<MetAndSaid> {
-    let source = programs::generate(u, programs::Options::default())?;
-    Ok(met_and_said_of(&source, 20))
+pub fn met_and_said_of_programs(u: &mut Unstructured<'_>, with_forks: bool) -> Result<MetAndSaid> {
+    Ok(met_and_said_of(&reach_programs::generate(u, with_forks)?, 100))
 }
 
 /// The same of this program, in so many runs.
@@ -113,7 +112,7 @@ fn met_by_runs(program: &Verified, runs: u64) -> MetAndSaid {
     for seed in 0..runs {
         let mut cell = Ledger::new(seed);
         let mut machine = machine(program, &cell);
-        for _ in 0..300 {
+        for _ in 0..MAX_STEPS {
             let pc = machine.state().pc();
             let (mut trial, mut trial_cell) = (machine.clone(), cell.clone());
             if let Some(horizon) = back(&mut trial, &mut trial_cell) {

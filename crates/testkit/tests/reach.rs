@@ -5,18 +5,10 @@
 use obverse_isa::Instr;
 use obverse_reach::{Horizon, Reach};
 use obverse_testkit::reach_laws::met_and_said_of;
+use obverse_testkit::reach_programs::ERRORS;
 
 /// How many runs each program gets: the cell answers otherwise in each.
 const RUNS: u64 = 200;
-
-const ERRORS: &str = r#"
-error dead { severity fatal }
-error anew { recover using fix; then restart program }
-error again { recover using fix; then return to sequence }
-error on { recover using fix; then continue }
-error late { respond after current sequence; recover using fix; then continue }
-sequence fix { toggle 6 }
-"#;
 
 #[track_caller]
 fn exact(source: &str) {

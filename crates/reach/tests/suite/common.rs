@@ -63,6 +63,12 @@ pub(crate) const START: &str = "
 /// The same of the only sequence.
 #[track_caller]
 pub(crate) fn of_main(body: &str, expected: &[(&str, &[&str])]) {
-    let text = format!("{START}.function \"main\" sequence\nenter\n{body}\nreturn");
+    of_main_with("", body, expected);
+}
+
+/// The same with what its frame holds.
+#[track_caller]
+pub(crate) fn of_main_with(frame: &str, body: &str, expected: &[(&str, &[&str])]) {
+    let text = format!("{START}.function \"main\" sequence\n{frame}\nenter\n{body}\nreturn");
     said(&text, expected);
 }

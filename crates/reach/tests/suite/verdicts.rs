@@ -1,7 +1,7 @@
 //! What is said of points of small modules. A point is a checkpoint, a horizon is the reason of a
 //! barrier.
 
-use crate::common::{START, of_main, point, said, verified};
+use crate::common::{START, of_main, of_main_with, point, said, verified};
 use obverse_isa::Instr;
 use obverse_reach::{Horizon, Link, MAX_KEPT, Reach, Standing};
 
@@ -325,4 +325,25 @@ fn a_statement_is_of_the_class_of_what_is_hardest_to_take_back_in_it() {
     assert_eq!(class(3, 4), Standing::Never);
     assert_eq!(class(4, 7), Standing::Always, "passed over");
     assert_eq!(class(5, 6), Standing::Never, "from within the block");
+}
+
+#[test]
+fn a_counted_loop_of_at_least_one_round_is_not_passed_by() {
+    let counted = |first: i32, last: i32| {
+        format!(
+            r#"
+                push.int {first}
+                push.int {last}
+            enter: for.enter 0, out
+            top: for.top 0, next
+            barrier "round"
+            next: for.next 0, top
+            out: for.exit 0, enter
+            checkpoint behind
+            "#
+        )
+    };
+    of_main_with(".counters 1", &counted(1, 3), &[("behind", &["round"])]);
+    of_main_with(".counters 1", &counted(2, 2), &[("behind", &["round"])]);
+    of_main_with(".counters 1", &counted(3, 1), &[("behind", &["start", "round"])]);
 }
