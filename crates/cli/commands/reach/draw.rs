@@ -119,13 +119,16 @@ fn names(stretches: &[usize]) -> String {
     stretches.iter().map(|&stretch| letter(stretch)).collect::<Vec<_>>().join(",")
 }
 
+/// A bracket: its first and last row, and the function and the stretch that it is of, if it is of
+/// one alone.
+type Bracket = (usize, usize, Option<(usize, usize)>);
+
 /// A bracket is around lines of one function, one below the other, that can go back equally far.
 /// A line whose statements cannot has one of its own.
 fn edges(rows: &[Row]) -> Vec<Edge> {
     let mut edges = vec![Edge::Nothing; rows.len()];
-    // The first and the last line of the bracket that is open, and whose it is.
-    let mut open: Option<(usize, usize, Option<(usize, usize)>)> = None;
-    let mut close = |open: Option<(usize, usize, Option<(usize, usize)>)>| {
+    let mut open: Option<Bracket> = None;
+    let mut close = |open: Option<Bracket>| {
         let Some((first, last, _)) = open else { return };
         edges[first..=last].fill(Edge::Side);
         edges[first] = Edge::Top;
