@@ -119,29 +119,39 @@ fn names(stretches: &[usize]) -> String {
     stretches.iter().map(|&stretch| letter(stretch)).collect::<Vec<_>>().join(",")
 }
 
+/// A bracket that is open: its first and its last line, and the function and the stretch that may
+/// go on; none for a line whose statements are in several.
+struct Bracket {
+    first: usize,
+    last: usize,
+    of: Option<(usize, usize)>,
+}
+
 /// A bracket is around lines of one function, one below the other, that can go back equally far.
 /// A line whose statements cannot has one of its own.
 fn edges(rows: &[Row]) -> Vec<Edge> {
     let mut edges = vec![Edge::Nothing; rows.len()];
-    // The first and the last line of the bracket that is open, and whose it is.
-    let mut open: Option<(usize, usize, Option<(usize, usize)>)> = None;
-    let mut close = |open: Option<(usize, usize, Option<(usize, usize)>)>| {
-        let Some((first, last, _)) = open else { return };
+    let mut close = |open: Option<Bracket>| {
+        let Some(Bracket { first, last, .. }) = open else { return };
         edges[first..=last].fill(Edge::Side);
         edges[first] = Edge::Top;
         edges[last] = if first == last { Edge::Alone } else { Edge::Foot };
     };
+    let mut open: Option<Bracket> = None;
     for (at, row) in rows.iter().enumerate() {
         if let Some(statement) = row.statements.first() {
-            let key = match row.stretches()[..] {
+            let stretches = row.stretches();
+            let of = match stretches[..] {
                 [stretch] => Some((statement.function, stretch)),
                 _ => None,
             };
             open = match open {
-                Some((first, _, of)) if of.is_some() && of == key => Some((first, at, key)),
+                Some(bracket) if of.is_some() && bracket.of == of => {
+                    Some(Bracket { last: at, ..bracket })
+                }
                 before => {
                     close(before);
-                    (!row.stretches().is_empty()).then_some((at, at, key))
+                    (!stretches.is_empty()).then_some(Bracket { first: at, last: at, of })
                 }
             };
         }

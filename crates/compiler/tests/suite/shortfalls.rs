@@ -122,7 +122,8 @@ fn an_error_that_a_fault_raises() {
     check(&format!("{stuck}sequence main {{ checkpoint ready toggle 1 call glue }}"), &[]);
     check(
         &format!(
-            "{stuck}io grip {{ set 0 high }}\nsequence main {{ checkpoint ready\ncall glue\nio grip\n}}"
+            "{stuck}io grip {{ set 0 high }}\n\
+             sequence main {{ checkpoint ready\ncall glue\nio grip\n}}"
         ),
         &["W0401 5: to the start of the sequence, and is stopped before that [4 0 1]"],
     );
