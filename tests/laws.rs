@@ -118,8 +118,8 @@ fn reach_is_met() {
     assert!(met * 100 >= said * 75, "of {said} horizons that points may have, {met} were met");
 }
 
-/// The same of programs of the language, in which errors lead on in every way; of a hundred that are
-/// said so many are met at the least.
+/// The same of programs of the language, in which errors lead on in every way; of a hundred that
+/// are said so many are met at the least.
 fn reach_of_programs_is_met_of(with_forks: bool, least: usize) {
     let (mut met, mut said) = (0, 0);
     for seed in 0..40 {
