@@ -13,7 +13,8 @@ pub(crate) fn error_of(module: &Module, fault: &Fault) -> Option<ErrorId> {
     u16::try_from(index).ok().map(ErrorId)
 }
 
-/// Let the fault that stopped the act at an instruction be an error of the program. Whether it could
+/// Let the fault that stopped the act at an instruction be an error of the program. Whether it
+/// could
 /// be. The machine does not tell of an act that a fault has ended; it is an action all the same.
 pub(crate) fn raise(
     machine: &mut Machine<'_>,

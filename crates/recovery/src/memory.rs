@@ -3,7 +3,8 @@
 //!
 //! An incident has a depth that is enough, which nobody sees, and an attempt that goes back as far
 //! helps with a chance that belongs to that depth: a spiral search near the error may need several,
-//! where a part gripped anew nearly always helps. The counts say how far each attempt of an incident
+//! where a part gripped anew nearly always helps. The counts say how far each attempt of an
+//! incident
 //! went back and whether the last was enough; [`belief`](crate::belief) says what follows. Knows
 //! nothing of what an action is, nor of files on a disk.
 
@@ -390,8 +391,8 @@ mod tests {
     #[test]
     fn a_search_near_goes_on_as_long_as_it_is_worth_it_and_then_what_is_far_is_done_anew() {
         // Half need the third point of a search, half what only four actions back does anew, which
-        // two and three are known not to. A near attempt gains 0.083 * 0.67^n a second and a far one
-        // 0.042, so that it is two or three near ones and then a far one.
+        // two and three are known not to. A near attempt gains 0.083 * 0.67^n a second and a far
+        // one 0.042, so that it is two or three near ones and then a far one.
         let mut memory = Memory::default();
         for _ in 0..40 {
             memory.learn("jam", "here", &[1, 1, 1], true);
