@@ -14,8 +14,8 @@ pub(crate) fn error_of(module: &Module, fault: &Fault) -> Option<ErrorId> {
 }
 
 /// Let the fault that stopped the act at an instruction be an error of the program. Whether it
-/// could be. The machine does not tell of an act that a fault has ended; it is an action all the
-/// same.
+/// could
+/// be. The machine does not tell of an act that a fault has ended; it is an action all the same.
 pub(crate) fn raise(
     machine: &mut Machine<'_>,
     error: ErrorId,

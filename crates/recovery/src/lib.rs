@@ -8,9 +8,11 @@
 //! [`trail`], what it may be taken back to; [`strategy`], the ways of recovering; [`incident`], an
 //! error at a place and what has been tried, with the words for a place and a fault that becomes
 //! an error (`place`, `fault`); [`depth`], how far to go back next; [`memory`], what
-//! was learned of that; [`foresight`], who would know better; [`change`], what is done otherwise on
+//! was learned of that, and `belief`, what follows; [`foresight`], who would know better;
+//! [`change`], what is done otherwise on
 //! the way forward again; [`tell`], what a person is told; [`mod@recover`], the loop.
 
+mod belief;
 pub mod change;
 pub mod depth;
 pub mod drive;

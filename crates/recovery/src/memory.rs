@@ -2,12 +2,13 @@
 //! person can read.
 //!
 //! An incident has a depth that is enough, which nobody sees, and an attempt that goes back as far
-//! helps with a chance that belongs to that depth: a spiral search near the error may need
-//! several, where a part gripped anew nearly always helps. The counts say how far each attempt of
-//! an incident went back and whether the last was enough; what they leave open of the depths is
-//! shared out by expectation maximisation (Turnbull 1976) over a prior that holds near depths
-//! likelier. Knows nothing of what an action is, nor of files on a disk.
+//! helps with a chance that belongs to that depth: a spiral search near the error may need several,
+//! where a part gripped anew nearly always helps. The counts say how far each attempt of an
+//! incident
+//! went back and whether the last was enough; [`belief`](crate::belief) says what follows. Knows
+//! nothing of what an action is, nor of files on a disk.
 
+use crate::belief::Belief;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 use std::fmt;
@@ -16,15 +17,6 @@ use std::fmt;
 pub const DEPTH_MAX: usize = 16;
 /// The most attempts of an incident that are remembered, the first ones.
 pub const ATTEMPTS_MAX: usize = 16;
-/// How many attempts that helped, and how many that did not, are believed of each depth that is
-/// enough before anything is known.
-const PRIOR_HELPED: f64 = 1.0;
-const PRIOR_FAILED: f64 = 1.0;
-/// The weight in incidents of what is believed of the first depth before anything is known; of a
-/// further one that divided by the depth.
-const PRIOR_FIRST: f64 = 1.0;
-/// What is believed of going back never helping, before anything is known.
-const PRIOR_NEVER: f64 = 0.1;
 /// How much longer a nearer depth may be expected to take than the best, as a share, where it was
 /// never tried, and how many attempts at it halve that: where far ones have helped nobody knows
 /// whether near ones would, until they have been tried.
@@ -33,8 +25,6 @@ const FEW: f64 = 5.0;
 /// How many incidents must be known in which going back as far as can be was in vain, before it is
 /// believed that going back may not help.
 const IN_VAIN_MIN: u64 = 5;
-/// Rounds of expectation maximisation: the shares settle to a percent in fewer.
-const ROUNDS: usize = 24;
 /// The version of the text.
 const VERSION: u32 = 1;
 /// The most kinds of incident that a text may hold.
@@ -42,11 +32,11 @@ const KINDS_MAX: usize = 100_000;
 
 /// What became of incidents of a kind.
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
-struct Kind {
+pub(crate) struct Kind {
     /// How far each attempt went back.
-    depths: Vec<usize>,
+    pub(crate) depths: Vec<usize>,
     /// Whether the last was enough.
-    is_enough: bool,
+    pub(crate) is_enough: bool,
 }
 
 /// What is known of an error at a place.
@@ -174,169 +164,6 @@ impl Memory {
         };
         let chance = actions.map_or(0.0, |depth| belief.chance(depth));
         Choice { actions, chance, expected_s, known }
-    }
-}
-
-/// A number for each depth, from 1, and in the last place one for what no depth is enough for.
-type Numbers = [f64; DEPTH_MAX + 1];
-
-/// What is believed of an incident.
-#[derive(Clone, Debug)]
-struct Belief {
-    /// How likely each depth is the least that is enough; all of them add up to 1.
-    shares: Numbers,
-    /// Of the attempts that went back far enough, how many are believed to have helped, and how
-    /// many not: the chance that one helps is Beta distributed, so that the first that fails says
-    /// little where nothing is known, and much where they nearly always help.
-    helped: Numbers,
-    failed: Numbers,
-}
-
-fn prior() -> Numbers {
-    std::array::from_fn(|index| match index {
-        DEPTH_MAX => PRIOR_NEVER,
-        _ => PRIOR_FIRST / (index + 1) as f64,
-    })
-}
-
-fn normal(mut shares: Numbers) -> Numbers {
-    let whole: f64 = shares.iter().sum();
-    shares.iter_mut().for_each(|share| *share /= whole);
-    shares
-}
-
-/// What incidents of a kind say of each depth: see [`attempts`].
-type AllAttempts = [Option<(f64, f64)>; DEPTH_MAX + 1];
-
-/// What incidents of a kind say of a depth, if that is the least that is enough: how many attempts
-/// that went so far have failed, and whether one has helped; none if one has helped that did not.
-fn attempts(kind: &Kind, index: usize) -> Option<(f64, f64)> {
-    let goes_so_far = |depth: &&usize| index < DEPTH_MAX && **depth > index;
-    let (last, before) = kind.depths.split_last()?;
-    let failed = if kind.is_enough { before } else { &kind.depths[..] };
-    let helped = match kind.is_enough {
-        true if goes_so_far(&last) => 1.0,
-        true => return None,
-        false => 0.0,
-    };
-    Some((failed.iter().filter(goes_so_far).count() as f64, helped))
-}
-
-impl Belief {
-    fn of(times: &BTreeMap<Kind, u64>) -> Self {
-        let mut belief = Self {
-            shares: normal(prior()),
-            helped: [PRIOR_HELPED; DEPTH_MAX + 1],
-            failed: [PRIOR_FAILED; DEPTH_MAX + 1],
-        };
-        let kinds: Vec<(AllAttempts, f64)> = times
-            .iter()
-            .map(|(kind, times)| {
-                (std::array::from_fn(|index| attempts(kind, index)), *times as f64)
-            })
-            .collect();
-        for _ in 0..ROUNDS {
-            let (mut weights, mut helped) = (prior(), [PRIOR_HELPED; DEPTH_MAX + 1]);
-            let mut failed = [PRIOR_FAILED; DEPTH_MAX + 1];
-            for (attempts, times) in &kinds {
-                let likely = belief.explain(attempts);
-                let whole: f64 = likely.iter().sum();
-                for (index, attempts) in attempts.iter().enumerate() {
-                    let incidents = times * likely[index] / whole;
-                    let (in_vain, enough) = attempts.unwrap_or_default();
-                    weights[index] += incidents;
-                    helped[index] += incidents * enough;
-                    failed[index] += incidents * in_vain;
-                }
-            }
-            belief = Self { shares: normal(weights), helped, failed };
-        }
-        belief
-    }
-
-    /// How likely each depth is the least that is enough and an incident has come to this.
-    fn explain(&self, attempts: &AllAttempts) -> Numbers {
-        std::array::from_fn(|index| {
-            let Some((failed, helped)) = attempts[index] else { return 0.0 };
-            let helps = self.helps(index);
-            let likely = if helped > 0.0 { helps } else { 1.0 };
-            self.shares[index] * likely * libm::pow(1.0 - helps, failed)
-        })
-    }
-
-    /// The chance that an attempt helps that goes back far enough.
-    fn helps(&self, index: usize) -> f64 {
-        self.helped[index] / (self.helped[index] + self.failed[index])
-    }
-
-    /// The chance that an attempt of a depth gets past the error.
-    fn chance(&self, depth: usize) -> f64 {
-        (0..depth.min(DEPTH_MAX)).map(|index| self.shares[index] * self.helps(index)).sum()
-    }
-
-    /// An attempt of a depth has failed.
-    fn fail(&mut self, depth: usize) {
-        self.weaken(depth);
-        self.shares = normal(self.shares);
-    }
-
-    /// Take from the shares what an attempt of a depth gets past.
-    fn weaken(&mut self, depth: usize) {
-        for index in 0..depth.min(DEPTH_MAX) {
-            self.shares[index] *= 1.0 - self.helps(index);
-            self.failed[index] += 1.0;
-        }
-    }
-
-    /// The least expected time to be past the error, and the depth to try first for it; none where
-    /// there is none. Of those that take hardly longer (by a factor) it is the nearest, from which
-    /// most is learned.
-    fn best(&self, costs: Costs<'_>, slack: impl Fn(usize) -> f64) -> Option<(f64, usize)> {
-        let depths = 1..=costs.by_depth_s.len().min(DEPTH_MAX);
-        let times_s: Vec<f64> = depths.map(|first| self.expected_s(first, costs)).collect();
-        let least_s = times_s.iter().copied().fold(f64::INFINITY, f64::min);
-        let is_it = |(index, time_s): (usize, &f64)| {
-            time_s.is_finite() && *time_s <= least_s * slack(index + 1)
-        };
-        let index = times_s.iter().enumerate().position(is_it)?;
-        Some((times_s[index], index + 1))
-    }
-
-    /// The least expected time to be past the error, if a depth is tried first. All that is learned
-    /// on the way is that attempts have failed, so that what to do can be planned at once: a depth
-    /// some times, and then another as often as may be.
-    fn expected_s(&self, first: usize, costs: Costs<'_>) -> f64 {
-        let mut course = Course { belief: self.clone(), spent_s: 0.0 };
-        let mut least_s = f64::INFINITY;
-        for left in (0..costs.attempts_left).rev() {
-            least_s = least_s.min(course.attempt(first, costs));
-            for then in (1..=costs.by_depth_s.len().min(DEPTH_MAX)).filter(|then| *then != first) {
-                least_s = least_s.min(course.clone().go_on(then, left, costs));
-            }
-        }
-        least_s
-    }
-}
-
-/// A plan that is being followed in thought; the shares are what is left of them.
-#[derive(Clone)]
-struct Course {
-    belief: Belief,
-    spent_s: f64,
-}
-
-impl Course {
-    /// One attempt more. The expected time if it is given up after that, in seconds.
-    fn attempt(&mut self, depth: usize, costs: Costs<'_>) -> f64 {
-        let open: f64 = self.belief.shares.iter().sum();
-        self.spent_s += open * costs.by_depth_s[depth - 1];
-        self.belief.weaken(depth);
-        self.spent_s + self.belief.shares.iter().sum::<f64>() * costs.give_up_s
-    }
-
-    /// The same depth up to so often. The expected time if it is given up where that is best.
-    fn go_on(mut self, depth: usize, times: u32, costs: Costs<'_>) -> f64 {
-        (0..times).map(|_| self.attempt(depth, costs)).fold(f64::INFINITY, f64::min)
     }
 }
 
@@ -493,4 +320,150 @@ fn check(kind: &KindText) -> Result<(), &'static str> {
 }
 
 #[cfg(test)]
-mod tests;
+mod tests {
+    use super::*;
+
+    const COSTS_S: [f64; 6] = [2.0, 4.0, 8.0, 12.0, 20.0, 30.0];
+
+    fn choose(memory: &mut Memory, tried: &[usize]) -> Choice {
+        let costs = Costs { by_depth_s: &COSTS_S, give_up_s: 300.0, attempts_left: 8 };
+        memory.choose("jam", "here", tried, costs)
+    }
+
+    #[test]
+    fn who_knows_nothing_begins_near_goes_further_and_gives_up_only_at_the_end() {
+        let mut memory = Memory::default();
+        let mut tried = Vec::new();
+        for attempts_left in (1..=12).rev() {
+            let costs = Costs { by_depth_s: &COSTS_S, give_up_s: 300.0, attempts_left };
+            tried.push(memory.choose("jam", "here", &tried, costs).actions.unwrap());
+        }
+        assert_eq!(tried[0], 1, "{tried:?}");
+        assert_eq!(tried.iter().max(), Some(&COSTS_S.len()), "{tried:?}");
+        let costs = Costs { by_depth_s: &COSTS_S, give_up_s: 300.0, attempts_left: 0 };
+        assert_eq!(memory.choose("jam", "here", &tried, costs).actions, None);
+    }
+
+    #[test]
+    fn who_has_given_up_early_has_not_learned_that_it_is_in_vain() {
+        let mut memory = Memory::default();
+        for _ in 0..100 {
+            memory.learn("jam", "here", &[1, 3], false);
+        }
+        assert!(choose(&mut memory, &[1, 3]).actions.is_some());
+    }
+
+    #[test]
+    fn where_four_was_always_enough_and_three_never_it_goes_back_four_at_once() {
+        let mut memory = Memory::default();
+        for _ in 0..30 {
+            memory.learn("jam", "here", &[1, 3, 4], true);
+        }
+        assert_eq!(choose(&mut memory, &[]).actions, Some(4));
+        // Elsewhere, and for another error, nothing is known.
+        let costs = Costs { by_depth_s: &COSTS_S, give_up_s: 300.0, attempts_left: 8 };
+        assert!(memory.choose("jam", "there", &[], costs).actions.unwrap() <= 2);
+    }
+
+    #[test]
+    fn where_going_back_never_helped_it_gives_up_at_once() {
+        let mut memory = Memory::default();
+        for _ in 0..50 {
+            memory.learn("jam", "here", &[1, 2, 4, 6], false);
+        }
+        let costs = Costs { by_depth_s: &COSTS_S, give_up_s: 60.0, attempts_left: 8 };
+        assert_eq!(memory.choose("jam", "here", &[], costs).actions, None);
+    }
+
+    #[test]
+    fn half_near_and_half_far_goes_near_first_if_that_is_cheap() {
+        let mut memory = Memory::default();
+        for _ in 0..40 {
+            memory.learn("jam", "here", &[1], true);
+            memory.learn("jam", "here", &[1, 2, 4, 5], true);
+        }
+        let first = choose(&mut memory, &[]);
+        assert_eq!(first.actions, Some(1));
+        assert!((0.3..0.6).contains(&first.chance), "{}", first.chance);
+        assert_eq!(choose(&mut memory, &[1]).actions, Some(5));
+    }
+
+    #[test]
+    fn a_search_near_goes_on_as_long_as_it_is_worth_it_and_then_what_is_far_is_done_anew() {
+        // Half need the third point of a search, half what only four actions back does anew, which
+        // two and three are known not to. A near attempt gains 0.083 * 0.67^n a second and a far
+        // one 0.042, so that it is two or three near ones and then a far one.
+        let mut memory = Memory::default();
+        for _ in 0..40 {
+            memory.learn("jam", "here", &[1, 1, 1], true);
+            memory.learn("jam", "here", &[1, 1, 1, 1, 2, 3, 4], true);
+        }
+        let mut tried = Vec::new();
+        for _ in 0..6 {
+            tried.push(choose(&mut memory, &tried).actions.unwrap());
+        }
+        assert_eq!(tried[..2], [1, 1], "{tried:?}");
+        assert!(tried.contains(&4), "{tried:?}");
+    }
+
+    #[test]
+    fn where_each_attempt_helps_seldom_but_near_ones_as_much_as_far_it_stays_near() {
+        // A search that takes its time: one attempt in three helps, however far back.
+        let mut memory = Memory::default();
+        for round in 0..60 {
+            let depths: Vec<usize> = (0..1 + round % 5).map(|index| 1 + index % 3).collect();
+            memory.learn("jam", "here", &depths, true);
+        }
+        let mut tried = Vec::new();
+        for _ in 0..6 {
+            let choice = choose(&mut memory, &tried);
+            tried.push(choice.actions.unwrap());
+        }
+        assert!(tried.iter().all(|&depth| depth <= 3), "{tried:?}");
+    }
+
+    #[test]
+    fn a_memory_is_the_same_after_its_text() {
+        let mut memory = Memory::default();
+        memory.learn("jam", "sequence \"main\": advance insert", &[1, 2], true);
+        memory.learn("jam", "sequence \"main\": advance insert", &[1, 2], false);
+        memory.learn("empty", "elsewhere", &[40], true);
+        assert_eq!(Memory::from_text(&memory.to_text()), Ok(memory));
+    }
+
+    #[test]
+    fn what_no_run_can_have_learned_is_refused() {
+        let text = |incident: &str| {
+            format!(
+                "version = 1\n[[place]]\nerror = \"jam\"\nat = \"here\"\nincident = [{incident}]\n"
+            )
+        };
+        let what = |incident: &str| Memory::from_text(&text(incident)).unwrap_err().to_string();
+        let of =
+            |depths: &str| what(&format!("{{ depths = [{depths}], enough = true, times = 1 }}"));
+        assert!(of("").contains("nothing was tried"));
+        assert!(of("1, 0").contains("0 actions"));
+        assert!(of("99").contains("further"));
+        assert!(of("-1").contains("no memory"));
+        assert!(of(&"1,".repeat(17)).contains("more attempts"));
+        let other = Memory::from_text("version = 7\n").unwrap_err();
+        assert_eq!(other, MemoryError::Version { found: 7 });
+        let torn = &Memory::from_text(&text("{ depths = [1],")[..60]);
+        assert!(matches!(torn, Err(MemoryError::Malformed { .. })));
+    }
+
+    #[test]
+    fn memories_add_up() {
+        let (mut one, mut both) = (Memory::default(), Memory::default());
+        let mut other = Memory::default();
+        one.learn("jam", "here", &[1], true);
+        other.learn("jam", "here", &[1], true);
+        other.learn("jam", "there", &[2], false);
+        for memory in [&one.clone(), &other] {
+            both.merge(memory);
+        }
+        one.merge(&other);
+        assert_eq!(one, both);
+        assert_eq!(one.known("jam", "here"), 2);
+    }
+}
