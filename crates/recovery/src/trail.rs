@@ -64,7 +64,8 @@ impl Action {
         let is_motion = is_motion(event);
         let acts = event.instr.info().family.commands_workcell();
         self.only_moves &= event.open_blocks == 0 && (is_motion || !acts);
-        let is_guarded = event.instr.is_guarded();
+        let is_guarded =
+            matches!(event.instr, Instr::MoveGuarded { .. } | Instr::MoveGuardedOpposite { .. });
         let was_guarded = self.motion.is_some_and(|(_, is_guarded)| is_guarded);
         if is_motion && (is_guarded || !was_guarded) {
             self.motion = Some((event.pc, is_guarded));
