@@ -119,39 +119,32 @@ fn names(stretches: &[usize]) -> String {
     stretches.iter().map(|&stretch| letter(stretch)).collect::<Vec<_>>().join(",")
 }
 
-/// A bracket that is open: its first and its last line, and the function and the stretch that may
-/// go on; none for a line whose statements are in several.
-struct Bracket {
-    first: usize,
-    last: usize,
-    of: Option<(usize, usize)>,
-}
+/// A bracket: its first and last row, and the function and the stretch that it is of, if it is of
+/// one alone.
+type Bracket = (usize, usize, Option<(usize, usize)>);
 
 /// A bracket is around lines of one function, one below the other, that can go back equally far.
 /// A line whose statements cannot has one of its own.
 fn edges(rows: &[Row]) -> Vec<Edge> {
     let mut edges = vec![Edge::Nothing; rows.len()];
+    let mut open: Option<Bracket> = None;
     let mut close = |open: Option<Bracket>| {
-        let Some(Bracket { first, last, .. }) = open else { return };
+        let Some((first, last, _)) = open else { return };
         edges[first..=last].fill(Edge::Side);
         edges[first] = Edge::Top;
         edges[last] = if first == last { Edge::Alone } else { Edge::Foot };
     };
-    let mut open: Option<Bracket> = None;
     for (at, row) in rows.iter().enumerate() {
         if let Some(statement) = row.statements.first() {
-            let stretches = row.stretches();
-            let of = match stretches[..] {
+            let key = match row.stretches()[..] {
                 [stretch] => Some((statement.function, stretch)),
                 _ => None,
             };
             open = match open {
-                Some(bracket) if of.is_some() && bracket.of == of => {
-                    Some(Bracket { last: at, ..bracket })
-                }
+                Some((first, _, of)) if of.is_some() && of == key => Some((first, at, key)),
                 before => {
                     close(before);
-                    (!stretches.is_empty()).then_some(Bracket { first: at, last: at, of })
+                    (!row.stretches().is_empty()).then_some((at, at, key))
                 }
             };
         }
@@ -216,18 +209,24 @@ fn folded(list: &str) -> Vec<String> {
     folded
 }
 
-/// The lines of each stretch: `12-15, 20`. A line that does nothing does not part them.
+/// The lines of each stretch: `12-15, 20`, those of each file after its name where there are
+/// several. A line that does nothing does not part them.
 fn lines(page: &Page) -> Vec<String> {
     let mut lines = vec![String::new(); page.stretches.len()];
-    let mut close = |(stretch, first, last): (usize, usize, usize)| {
-        let separator = if lines[stretch].is_empty() { "" } else { ", " };
+    let mut named: Vec<Option<u16>> = vec![None; page.stretches.len()];
+    let mut close = |(stretch, row, last): (usize, &Row, usize)| {
+        let (told, first) = (&mut lines[stretch], row.number);
+        let separator = if told.is_empty() { "" } else { ", " };
+        let is_named = named[stretch].replace(row.file) == Some(row.file);
+        let file = page.files.get(usize::from(row.file)).filter(|_| !is_named);
+        let file = file.map_or(String::new(), |file| format!("{file}:"));
         let _ = match first == last {
-            true => write!(lines[stretch], "{separator}{first}"),
-            false => write!(lines[stretch], "{separator}{first}-{last}"),
+            true => write!(told, "{separator}{file}{first}"),
+            false => write!(told, "{separator}{file}{first}-{last}"),
         };
     };
     // The stretches of the row before, with the first and the last of their lines.
-    let mut open: Vec<(usize, usize, usize)> = Vec::new();
+    let mut open: Vec<(usize, &Row, usize)> = Vec::new();
     for row in &page.rows {
         if row.is_after_gap {
             open.drain(..).for_each(&mut close);
@@ -240,9 +239,9 @@ fn lines(page: &Page) -> Vec<String> {
         open.extend(
             row.stretches()
                 .into_iter()
-                .map(|stretch| (stretch, first_of(stretch).unwrap_or(row.number), row.number)),
+                .map(|stretch| (stretch, first_of(stretch).unwrap_or(row), row.number)),
         );
-        let is_over = |one: &&(usize, usize, usize)| open.iter().all(|goes_on| goes_on.0 != one.0);
+        let is_over = |one: &&(usize, &Row, usize)| open.iter().all(|goes_on| goes_on.0 != one.0);
         before.iter().filter(is_over).copied().for_each(&mut close);
     }
     open.into_iter().for_each(close);
