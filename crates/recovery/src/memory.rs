@@ -5,7 +5,7 @@
 //! helps with a chance that belongs to that depth: a spiral search near the error may need several,
 //! where a part gripped anew nearly always helps. The counts say how far each attempt of an
 //! incident
-//! went back and whether the last was enough; [`belief`](crate::belief) says what follows. Knows
+//! went back and whether the last was enough; `belief` says what follows. Knows
 //! nothing of what an action is, nor of files on a disk.
 
 use crate::belief::Belief;
