@@ -4,9 +4,8 @@
 //! An incident has a depth that is enough, which nobody sees, and an attempt that goes back as far
 //! helps with a chance that belongs to that depth: a spiral search near the error may need several,
 //! where a part gripped anew nearly always helps. The counts say how far each attempt of an
-//! incident
-//! went back and whether the last was enough; `belief` says what follows. Knows
-//! nothing of what an action is, nor of files on a disk.
+//! incident went back and whether the last was enough; `belief` says what follows. Knows nothing
+//! of what an action is, nor of files on a disk.
 
 use crate::belief::Belief;
 use serde::{Deserialize, Serialize};
