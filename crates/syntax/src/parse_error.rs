@@ -266,30 +266,36 @@ impl Mistake<'_> {
 
     /// `i++`, `x *= 2`.
     fn foreign_assignment(&self, found: Token) -> Option<Diagnostic> {
-        if found != Token::Name || !self.expectation.allows_statement() {
+        if !found.can_be_name() || !self.expectation.allows_statement() {
             return None;
         }
         let name = shortened(self.surroundings.text(self.error.span));
         let [first, second] = self.surroundings.two_after(self.error.span.end)?;
         let is_one_sign = first.span.end == second.span.start;
-        let instead = match (first.token, second.token) {
-            (Token::Plus, Token::Plus) => format!("{name} += 1"),
-            (Token::Minus, Token::Minus) => format!("{name} -= 1"),
-            (Token::Star, Token::Assign) => format!("{name} = {name} * .."),
-            (Token::Slash, Token::Assign) => format!("{name} = {name} / .."),
+        let step = |sign| (format!("{name} {sign} 1"), Some(format!(" {sign} 1")));
+        let (instead, change) = match (first.token, second.token) {
+            (Token::Plus, Token::Plus) => step("+="),
+            (Token::Minus, Token::Minus) => step("-="),
+            // In place of the sign alone it would take the first factor of what follows.
+            (Token::Star, Token::Assign) => (format!("{name} = {name} * .."), None),
+            (Token::Slash, Token::Assign) => (format!("{name} = {name} / .."), None),
             _ => return None,
         };
         let span = first.span.to(second.span);
         let sign = self.surroundings.text(span);
         let message = format!("`{sign}` is not an assignment here");
         let diagnostic = Diagnostic::error(Code::ForeignOperator, span, message, "unknown");
-        is_one_sign.then(|| diagnostic.with_help(format!("write `{instead}`")))
+        let diagnostic = diagnostic.with_help(format!("write `{instead}`"));
+        is_one_sign.then(|| match change {
+            Some(text) => diagnostic.replacing(span, text),
+            None => diagnostic,
+        })
     }
 
     /// `requires x = 3`; but an assignment on a line of its own is the next statement.
     fn comparison_as_assignment(&self, found: Token) -> Option<Diagnostic> {
         let is_operand = found == Token::Assigned
-            && self.expectation.allows_value()
+            && self.expectation.allows("not")
             && !self.surroundings.begins_line(self.error.span.start);
         let sign = self.surroundings.after(self.error.span.end).filter(|_| is_operand)?;
         Some(tree::assigns(sign.span))

@@ -192,7 +192,7 @@ impl<'s> Checker<'s> {
                 diagnostic = diagnostic.with_note(format!("there {verb} {}", there.join(", ")));
             }
         }
-        self.reports.add(diagnostic);
+        self.reports.add_unknown(name.value, diagnostic);
     }
 
     /// A local that there may be no room for.

@@ -328,7 +328,7 @@ impl<'s> Checker<'s> {
         let diagnostic =
             Diagnostic::error(Code::UnknownName, name.span, message, "declared nowhere");
         let meant = self.reports.meant(name.value, self.names.candidates(is_variable));
-        self.reports.add(match (name.value, meant) {
+        let diagnostic = match (name.value, meant) {
             ("speed", _) => diagnostic.with_help("a speed is set without `=`: `speed slow`"),
             ("tool", _) => diagnostic.with_help("a tool is set without `=`: `tool NAME`"),
             (_, Some(meant)) => {
@@ -344,7 +344,8 @@ impl<'s> Checker<'s> {
                     ))
                     .replacing(at, "var ")
             }
-        });
+        };
+        self.reports.add_unknown(name.value, diagnostic);
     }
 
     /// The variable that is assigned; that is no use of it.

@@ -1,0 +1,134 @@
+//! What of a text is not in its tree, as words: a name that stands there may have been declared
+//! there, so that it is not known to be unknown. It knows places and words, and no grammar.
+
+use crate::ast::{Item, Program};
+use crate::diagnostic::Diagnostic;
+use crate::span::Span;
+use std::collections::BTreeSet;
+
+/// The words of what a tree lacks.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct LeftOut {
+    words: BTreeSet<String>,
+    is_endless: bool,
+}
+
+impl LeftOut {
+    /// Of a text that is not read to its end, or cannot be read: it may have any word.
+    #[must_use]
+    pub fn endless() -> Self {
+        Self { words: BTreeSet::new(), is_endless: true }
+    }
+
+    /// Of a tree that has mistakes: the lines of these, the spans that the parser gave up, and what
+    /// stands outside of all declarations.
+    pub(crate) fn of(
+        source: &str,
+        start: usize,
+        program: &Program<'_>,
+        diagnostics: &[Diagnostic],
+        given_up: &[Span],
+    ) -> Self {
+        let mut words = BTreeSet::new();
+        let mut take = |span: Span| {
+            let text = source.get(span.start as usize..span.end as usize).unwrap_or("");
+            let is_word_part = |c: char| c.is_alphanumeric() || c == '_';
+            let found = text.split(|c| !is_word_part(c)).filter(|word| !word.is_empty());
+            words.extend(found.map(str::to_owned));
+        };
+        for one in diagnostics {
+            take(lines_of(source, one.primary.span));
+        }
+        given_up.iter().for_each(|span| take(*span));
+        let mut declared: Vec<Span> = program.items.iter().filter_map(span_of).collect();
+        declared.sort_by_key(|span| span.start);
+        let mut end = start as u32;
+        for span in declared {
+            take(Span::new(end, span.start.max(end)));
+            end = end.max(span.end);
+        }
+        take(Span::new(end, source.len() as u32));
+        Self { words, is_endless: false }
+    }
+
+    /// What several texts lack.
+    #[must_use]
+    pub fn and(mut self, other: Self) -> Self {
+        self.words.extend(other.words);
+        self.is_endless |= other.is_endless;
+        self
+    }
+
+    /// Whether this name may have been declared in what is left out.
+    #[must_use]
+    pub fn may_declare(&self, name: &str) -> bool {
+        self.is_endless || self.words.contains(name)
+    }
+}
+
+/// The lines that a span is on.
+fn lines_of(source: &str, span: Span) -> Span {
+    let is_end = |byte: &u8| matches!(byte, b'\n' | b'\r');
+    let (before, behind) = source.as_bytes().split_at((span.start as usize).min(source.len()));
+    let start = before.iter().rposition(is_end).map_or(0, |at| at + 1);
+    let length = (span.end - span.start) as usize;
+    let rest = behind.get(length..).unwrap_or_default();
+    let end = source.len() - rest.len() + rest.iter().position(is_end).unwrap_or(rest.len());
+    Span::new(start as u32, end as u32)
+}
+
+/// The place of a declaration that gives a name.
+fn span_of(item: &Item<'_>) -> Option<Span> {
+    Some(match item {
+        Item::Signal(one) => one.span,
+        Item::Io(one) => one.span,
+        Item::Joints(one) => one.span,
+        Item::ItemDeclaration(one) => one.span,
+        Item::Error(one) => one.span,
+        Item::AdvancedMove(one) => one.span,
+        Item::Sequence(one) => one.span,
+        Item::Cleanup(one) => one.span,
+        Item::Variable(one) => one.span,
+        Item::Cell(_) | Item::Import(_) | Item::Allow(_) => return None,
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::parse;
+
+    fn may_declare(source: &str, name: &str) -> bool {
+        parse(source).left_out.is_some_and(|left_out| left_out.may_declare(name))
+    }
+
+    #[test]
+    fn what_is_left_out_may_declare_its_words_and_no_others() {
+        let source = "sequnce helper { wait 1 s }\nsequence main {\n  call help\n  wiat 3 s\n}\n";
+        assert!(may_declare(source, "helper"));
+        assert!(may_declare(source, "wiat"));
+        assert!(!may_declare(source, "help"));
+    }
+
+    #[test]
+    fn what_is_cut_off_may_declare_anything() {
+        assert!(may_declare("sequence main {\n  call help\n", "help"));
+        assert!(may_declare("sequence main { call help }\nsequence", "help"));
+        assert!(!may_declare("sequence main { call help }\n", "help"), "it is whole");
+    }
+
+    #[test]
+    fn a_declaration_that_is_given_up_behind_its_block_keeps_its_name() {
+        assert!(may_declare(
+            "io open {\n  set 1 high\n} reverse 3\nsequence main { io open }",
+            "open"
+        ));
+        assert!(may_declare("sequence main {\n  var n =\n    )\n  n = 4\n}\n", "n"));
+    }
+
+    #[test]
+    fn a_brace_that_is_missing_before_a_declaration_is_no_end() {
+        let source =
+            "sequence main {\n  if true { wait 1 s\n  io grip\n}\nsequence b { wait 1 s }\n";
+        assert!(!may_declare(source, "grip"));
+    }
+}
