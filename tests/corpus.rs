@@ -7,13 +7,14 @@
 //! its `main` has no inverse. What is meant is never written by a switch: goldens are for how it
 //! looks.
 //!
-//! A change that a diagnostic suggests is made: what it was suggested for is then gone.
+//! A change that a diagnostic suggests is made: what it was suggested for is then gone, and as far
+//! as its place there are fewer errors.
 
 use libtest_mimic::{Arguments, Failed, Trial};
 use obverse_compiler::{Compiled, MAX_IMPORT_DEPTH, MAX_IMPORTED, NoInverse, invert_files};
 use obverse_syntax::MAX_SOURCE_BYTES;
 use obverse_syntax::codes::Code;
-use obverse_syntax::diagnostic::Diagnostic;
+use obverse_syntax::diagnostic::{Diagnostic, Severity};
 use obverse_syntax::source::LineIndex;
 use obverse_syntax::sources::{Place, Sources};
 use obverse_testkit::files::Folder;
@@ -150,7 +151,8 @@ fn compare(said: &Placed, found: &[Found]) -> Result<(), Failed> {
     Err(format!("it says\n  {said:?}\nand there are\n  {told}").into())
 }
 
-/// Make the change that a diagnostic suggests: it is then gone.
+/// Make the change that a diagnostic suggests: it is then gone, and as far as its place there are
+/// fewer errors of its family. What follows, and what its names and types come to, is seen only now.
 fn check_suggestion(
     folder: &Folder,
     compiled: &Compiled,
@@ -173,10 +175,37 @@ fn check_suggestion(
             && one.primary.span.start == diagnostic.primary.span.start
             && one.message == diagnostic.message
     };
-    match left.diagnostics.iter().find(is_same) {
-        Some(same) => Err(format!("`{}` does not mend: {}", suggestion.text, same.message).into()),
-        None => Ok(()),
+    if let Some(same) = left.diagnostics.iter().find(is_same) {
+        return Err(format!("`{}` does not mend: {}", suggestion.text, same.message).into());
     }
+    // Measured from the end, which the change does not move.
+    let from_end = |compiled: &Compiled| {
+        let length = compiled.sources.whole().len();
+        move |one: &Diagnostic| length - one.primary.span.start as usize
+    };
+    let rest = from_end(&compiled)(diagnostic);
+    let before = errors_to(rest, diagnostic, &compiled.diagnostics, from_end(compiled));
+    let after = errors_to(rest, diagnostic, &left.diagnostics, from_end(&left));
+    if diagnostic.severity == Severity::Error && after.len() >= before.len() {
+        let why = format!("`{}` for {} leaves", suggestion.text, diagnostic.message);
+        return Err(format!("{why}\n  {}", after.join("\n  ")).into());
+    }
+    Ok(())
+}
+
+/// The errors of the family of a diagnostic, such as `E00`, that begin so far from the end or
+/// further. That a statement then stands outside of a sequence is another's fault.
+fn errors_to<'d>(
+    rest: usize,
+    of: &Diagnostic,
+    diagnostics: &'d [Diagnostic],
+    from_end: impl Fn(&Diagnostic) -> usize,
+) -> Vec<&'d str> {
+    let family = |one: &Diagnostic| one.code.as_str()[..3].to_owned();
+    let is_counted = |one: &&Diagnostic| {
+        family(one) == family(of) && one.code != Code::StatementOutside && from_end(one) >= rest
+    };
+    diagnostics.iter().filter(is_counted).map(|one| one.message.as_str()).collect()
 }
 
 /// A text of more than there may be, files that import one another in too long a row, and too many

@@ -81,9 +81,7 @@ impl Unexpected<'_> {
         }
         let text = self.text();
         if self.found.can_be_name() && self.next() == Some(Token::OpenParenthesis) {
-            let call = format!("call {}", shortened(text));
-            let help = format!("to call an action write `{call}(..)`");
-            return Some(said(help).replacing(self.span(), &call));
+            return Some(self.called_like_a_function());
         }
         if self.found.can_be_name()
             && let Some(statement) = self.statement_with(text)
@@ -101,6 +99,30 @@ impl Unexpected<'_> {
             Token::Program => "write `sequence main { .. }`",
             _ => return None,
         }))
+    }
+
+    /// `pick(vial)`, `grip()`
+    fn called_like_a_function(&self) -> Advice {
+        let text = self.text();
+        let call = format!("call {}", shortened(text));
+        match self.statement_with(text) {
+            Some(statement) if statement != call => {
+                let help = said(format!("write `{statement}`"));
+                let [open, close] = match self.surroundings.two_after(self.span().end) {
+                    Some(brackets) => brackets,
+                    None => return help,
+                };
+                let is_empty =
+                    (open.token, close.token) == (Token::OpenParenthesis, Token::CloseParenthesis);
+                match is_empty {
+                    true => help.replacing(self.span().to(close.span), &statement),
+                    false => help,
+                }
+            }
+            _ => {
+                said(format!("to call an action write `{call}(..)`")).replacing(self.span(), &call)
+            }
+        }
     }
 
     /// Whether something follows on its line.

@@ -69,10 +69,7 @@ const ROWS: &[Row] = &[
         "there are no circular moves: name points of the arc and write `move to NAME linearly`",
     ),
     line(
-        &[
-            "setgo",
-            "pulsedo",
-        ],
+        &["setgo", "pulsedo"],
         "name the output, `output gripper = 0`, and write `set gripper high` or `set gripper low`",
     ),
     line(
@@ -280,7 +277,9 @@ fn numbered(plain: &str, rest: &str) -> Option<Habit> {
             let number = first_word(number);
             format!("an input is read by `input {number}`, as in `if input {number} {{ .. }}`")
         }
-        ("r", Some(_)) => "declare a variable: `var count = 0`, then `count = count + 1`".to_owned(),
+        ("r", Some(_)) => {
+            "declare a variable: `var count = 0`, then `count = count + 1`".to_owned()
+        }
         ("j" | "l" | "c", None) if rest.trim_start().starts_with("P[") => {
             let how = if plain == "j" { "" } else { " linearly" };
             format!("declare the position, `joints NAME = [..] deg`, and write `move to NAME{how}`")

@@ -2,6 +2,7 @@
 //! there, so that it is not known to be unknown. It knows places and words, and no grammar.
 
 use crate::ast::{Item, Program};
+use crate::codes::Code;
 use crate::diagnostic::Diagnostic;
 use crate::span::Span;
 use std::collections::BTreeSet;
@@ -36,6 +37,9 @@ impl LeftOut {
             let found = text.split(|c| !is_word_part(c)).filter(|word| !word.is_empty());
             words.extend(found.map(str::to_owned));
         };
+        if diagnostics.iter().any(|one| is_of_name(source, one)) {
+            return Self::endless();
+        }
         for one in diagnostics {
             take(lines_of(source, one.primary.span));
         }
@@ -64,6 +68,15 @@ impl LeftOut {
     pub fn may_declare(&self, name: &str) -> bool {
         self.is_endless || self.words.contains(name)
     }
+}
+
+/// Whether a name is refused, in whose place the program may use any other.
+fn is_of_name(source: &str, diagnostic: &Diagnostic) -> bool {
+    let Span { start, end } = diagnostic.primary.span;
+    let text = source.get(start as usize..end as usize).unwrap_or("");
+    let is_foreign = diagnostic.code == Code::UnexpectedCharacter;
+    diagnostic.code == Code::ReservedWord
+        || is_foreign && text.chars().any(|c| !c.is_ascii() && c.is_alphabetic())
 }
 
 /// The lines that a span is on.
@@ -123,6 +136,13 @@ mod tests {
             "open"
         ));
         assert!(may_declare("sequence main {\n  var n =\n    )\n  n = 4\n}\n", "n"));
+    }
+
+    #[test]
+    fn a_name_that_is_refused_may_have_any_other_in_its_place() {
+        assert!(may_declare("var wait = 3 s\nsequence main { sleep pause_s }", "pause_s"));
+        assert!(may_declare("var gr\u{f6}\u{df}e = 3\nsequence main { groesse = 4 }", "groesse"));
+        assert!(!may_declare("var a = 3 \u{d7} 4\nsequence main { b = 4 }", "b"));
     }
 
     #[test]

@@ -118,6 +118,8 @@ fn say_once(source: &str, diagnostics: &mut Vec<Diagnostic>) {
         let is_again = is_slip && is_same_line && again.message == first.message;
         if is_again {
             first.primary.text = format!("{}, here and on", again.primary.text);
+            // One change does not mend them all.
+            first.suggestion = None;
         }
         is_again
     });
@@ -231,6 +233,8 @@ impl Mistake<'_> {
         let diagnostic = Diagnostic::error(Code::UnexpectedToken, span, message, "unexpected");
         let instead = match word {
             "steps" | "moves" | "statements" => Some("actions"),
+            "off" if self.expectation.wants("high") => Some("low"),
+            "on" if self.expectation.wants("high") => Some("high"),
             _ => nearest(word, self.expectation.words().chain(FREE_WORDS.iter().copied())),
         };
         Some(match instead {
