@@ -94,28 +94,28 @@ codes! {
                [-170, 170], [-170, 170], [-170, 170], [-170, 170]]"
     NoItem "C0201" "an item that the workcell has not"
         why "A program that declares an item runs in a workcell that has one of this name: a table \
-             `[[item]]`. For a program with `item vial { .. }`:"
+             `[[item]]`. The example is for a program with `item vial { .. }`."
         wrong "[arm]\nhome_rad = [0, -1.5, 1.5, 0, 0, 0]\n[outputs]\ncount = 4\n[inputs]\ncount = \
                4\n[[tool]]\nname = \"gripper\""
         right "[arm]\nhome_rad = [0, -1.5, 1.5, 0, 0, 0]\n[outputs]\ncount = 4\n[inputs]\ncount = \
                4\n[[tool]]\nname = \"gripper\"\n[[item]]\nname = \"vial\"\nplace = { }"
     NoTool "C0202" "a tool that the workcell has not"
         why "A program that mounts a tool runs in a workcell that has one of this name: a table \
-             `[[tool]]`. For a program with `tool gripper`:"
+             `[[tool]]`. The example is for a program with `tool gripper`."
         wrong "[arm]\nhome_rad = [0, -1.5, 1.5, 0, 0, 0]\n[outputs]\ncount = 4\n[inputs]\ncount = \
                4\n[[item]]\nname = \"vial\"\nplace = { }"
         right "[arm]\nhome_rad = [0, -1.5, 1.5, 0, 0, 0]\n[outputs]\ncount = 4\n[inputs]\ncount = \
                4\n[[tool]]\nname = \"gripper\"\n[[item]]\nname = \"vial\"\nplace = { }"
     NoOutput "C0203" "an output that the workcell has not"
-        why "Outputs are numbered from 0 to below the `count` of `[outputs]`. For a program with \
-             `set 3 high`:"
+        why "Outputs are numbered from 0 to below the `count` of `[outputs]`. The example is for a \
+             program with `set 3 high`."
         wrong "[arm]\nhome_rad = [0, -1.5, 1.5, 0, 0, 0]\n[outputs]\ncount = 3\n[inputs]\ncount = \
                4\n[[tool]]\nname = \"gripper\"\n[[item]]\nname = \"vial\"\nplace = { }"
         right "[arm]\nhome_rad = [0, -1.5, 1.5, 0, 0, 0]\n[outputs]\ncount = 4\n[inputs]\ncount = \
                4\n[[tool]]\nname = \"gripper\"\n[[item]]\nname = \"vial\"\nplace = { }"
     NoInput "C0204" "an input that the workcell has not"
-        why "Inputs are numbered from 0 to below the `count` of `[inputs]`. For a program with \
-             `if input 3 { .. }`:"
+        why "Inputs are numbered from 0 to below the `count` of `[inputs]`. The example is for a \
+             program with `if input 3 { .. }`."
         wrong "[arm]\nhome_rad = [0, -1.5, 1.5, 0, 0, 0]\n[outputs]\ncount = 4\n[inputs]\ncount = \
                3\n[[tool]]\nname = \"gripper\"\n[[item]]\nname = \"vial\"\nplace = { }"
         right "[arm]\nhome_rad = [0, -1.5, 1.5, 0, 0, 0]\n[outputs]\ncount = 4\n[inputs]\ncount = \
