@@ -11,7 +11,9 @@
 //! as its place there are fewer errors.
 
 use libtest_mimic::{Arguments, Failed, Trial};
-use obverse_compiler::{Compiled, MAX_IMPORT_DEPTH, MAX_IMPORTED, NoInverse, invert_files};
+use obverse_compiler::{
+    Compiled, MAX_IMPORT_DEPTH, MAX_IMPORTED, NoInverse, compile_files, invert_files,
+};
 use obverse_syntax::MAX_SOURCE_BYTES;
 use obverse_syntax::codes::Code;
 use obverse_syntax::diagnostic::{Diagnostic, Severity};
@@ -46,6 +48,7 @@ fn main() -> ExitCode {
         })
         .collect();
     trials.push(Trial::test("too large to be kept", too_large_to_be_kept));
+    trials.push(Trial::test("a word left out leaves no name unknown", no_name_is_lost));
     trials.push(Trial::test("every code occurs", every_code_occurs));
     trials.push(Trial::test("there are enough", there_are_enough));
     libtest_mimic::run(&arguments, trials).exit_code()
@@ -242,6 +245,35 @@ fn refused_once(folder: &mut Folder, name: &str, at: (&str, usize)) -> Result<()
     let compiled = compile(folder, name);
     let said = vec![(at.0.to_owned(), at.1, Code::TooManyImports.to_string())];
     compare(&said, &found_in(&compiled.sources, &compiled.diagnostics))
+}
+
+/// Of the programs for people a word is left out, each in turn. Where that is a mistake of grammar,
+/// no name is said to be unknown: all of them are declared.
+fn no_name_is_lost() -> Result<(), Failed> {
+    let programs = concat!(env!("CARGO_MANIFEST_DIR"), "/programs");
+    let folder = Folder::read(Path::new(programs));
+    let (mut mistakes, mut lost) = (0, Vec::new());
+    for (name, text) in folder.0.iter().filter(|(name, _)| name.ends_with(".obv")) {
+        let words: Vec<&str> = text.split_inclusive([' ', '\n']).collect();
+        for (index, word) in words.iter().enumerate().filter(|(_, word)| !word.trim().is_empty()) {
+            let end = if word.ends_with('\n') { "\n" } else { " " };
+            let cut = [&words[..index], &[end], &words[index + 1..]].concat().concat();
+            let found = compile_files(name, &cut, &mut folder.clone()).diagnostics;
+            if !found.iter().any(|one| one.code.as_str().starts_with("E00")) {
+                continue;
+            }
+            mistakes += 1;
+            let unknown = found.iter().filter(|one| one.code == Code::UnknownName);
+            lost.extend(unknown.map(|one| {
+                let line = words[..index].concat().lines().count();
+                format!("{name}:{line} without `{}`: {}", word.trim(), one.message)
+            }));
+        }
+    }
+    if mistakes < 100 || !lost.is_empty() {
+        return Err(format!("{} of {mistakes}\n  {}", lost.len(), lost.join("\n  ")).into());
+    }
+    Ok(())
 }
 
 fn every_code_occurs() -> Result<(), Failed> {

@@ -7,6 +7,19 @@ use crate::diagnostic::Diagnostic;
 use crate::span::Span;
 use std::collections::BTreeSet;
 
+/// What the parser left out in order to go on.
+#[derive(Debug, Default)]
+pub(crate) struct GivenUp {
+    /// Where.
+    pub(crate) spans: Vec<Span>,
+    /// Whether a block has no end, though declarations stand in it.
+    pub(crate) is_unclosed: bool,
+}
+
+/// The words that a name follows which is declared.
+const DECLARING: [&str; 10] =
+    ["io", "output", "joints", "item", "error", "sequence", "action", "var", "for", "position"];
+
 /// The words of what a tree lacks.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct LeftOut {
@@ -21,38 +34,50 @@ impl LeftOut {
         Self { words: BTreeSet::new(), is_endless: true }
     }
 
-    /// Of a tree that has mistakes: the lines of these, the spans that the parser gave up, and what
-    /// stands outside of all declarations.
+    /// Of the tree of what stands in a source from an offset on, and has mistakes: the lines of
+    /// these, the spans that the parser gave up, and what stands outside of all declarations.
     pub(crate) fn of(
         source: &str,
         start: usize,
         program: &Program<'_>,
         diagnostics: &[Diagnostic],
-        given_up: &[Span],
+        found: &GivenUp,
     ) -> Self {
-        let mut words = BTreeSet::new();
-        let mut take = |span: Span| {
-            let text = source.get(span.start as usize..span.end as usize).unwrap_or("");
-            let is_word_part = |c: char| c.is_alphanumeric() || c == '_';
-            let found = text.split(|c| !is_word_part(c)).filter(|word| !word.is_empty());
-            words.extend(found.map(str::to_owned));
-        };
         if diagnostics.iter().any(|one| is_of_name(source, one)) {
             return Self::endless();
         }
-        for one in diagnostics {
-            take(lines_of(source, one.primary.span));
+        let mut left_out = Self::default();
+        let lines = diagnostics.iter().map(|one| lines_of(source, one.primary.span));
+        for span in lines.chain(found.spans.iter().copied()) {
+            left_out.take(source, span);
         }
-        given_up.iter().for_each(|span| take(*span));
         let mut declared: Vec<Span> = program.items.iter().filter_map(span_of).collect();
         declared.sort_by_key(|span| span.start);
         let mut end = start as u32;
         for span in declared {
-            take(Span::new(end, span.start.max(end)));
+            left_out.take(source, Span::new(end, span.start.max(end)));
             end = end.max(span.end);
         }
-        take(Span::new(end, source.len() as u32));
-        Self { words, is_endless: false }
+        left_out.take(source, Span::new(end, source.len() as u32));
+        if found.is_unclosed {
+            left_out.take_variables(source.get(start..).unwrap_or(""));
+        }
+        left_out
+    }
+
+    fn take(&mut self, source: &str, span: Span) {
+        let text = source.get(span.start as usize..span.end as usize).unwrap_or("");
+        for (word, behind) in words_of(text) {
+            self.words.insert(word.to_owned());
+            self.is_endless |= lacks_name(word, behind);
+        }
+    }
+
+    /// A variable of the program that stands in a block without end is taken for one of the block.
+    fn take_variables(&mut self, text: &str) {
+        let variables = words_of(text).filter(|(word, _)| *word == "var");
+        let names = variables.filter_map(|(_, behind)| words_of(behind).next());
+        self.words.extend(names.map(|(name, _)| name.to_owned()));
     }
 
     /// What several texts lack.
@@ -68,6 +93,32 @@ impl LeftOut {
     pub fn may_declare(&self, name: &str) -> bool {
         self.is_endless || self.words.contains(name)
     }
+}
+
+/// The words of a text, each with what is behind it.
+fn words_of(text: &str) -> impl Iterator<Item = (&str, &str)> {
+    let mut rest = text;
+    std::iter::from_fn(move || {
+        let from_word = &rest[rest.find(is_word_part)?..];
+        let end = from_word.find(|c| !is_word_part(c)).unwrap_or(from_word.len());
+        let (word, behind) = from_word.split_at(end);
+        rest = behind;
+        Some((word, behind))
+    })
+}
+
+/// Whether a word declares and is given no name, which may have been any, or imports.
+fn lacks_name(word: &str, behind: &str) -> bool {
+    let behind = behind.trim_start_matches([' ', '\t']);
+    match word {
+        "import" => true,
+        "move" => behind.starts_with('{'),
+        _ => DECLARING.contains(&word) && !behind.starts_with(is_word_part),
+    }
+}
+
+fn is_word_part(c: char) -> bool {
+    c.is_alphanumeric() || c == '_'
 }
 
 /// Whether a name is refused, in whose place the program may use any other.
@@ -140,6 +191,7 @@ mod tests {
 
     #[test]
     fn a_name_that_is_refused_may_have_any_other_in_its_place() {
+        assert!(may_declare("joints = [0] deg\nsequence main { move to start }", "start"));
         assert!(may_declare("var wait = 3 s\nsequence main { sleep pause_s }", "pause_s"));
         assert!(may_declare("var gr\u{f6}\u{df}e = 3\nsequence main { groesse = 4 }", "groesse"));
         assert!(!may_declare("var a = 3 \u{d7} 4\nsequence main { b = 4 }", "b"));

@@ -101,7 +101,7 @@ fn parse_from(source: &str, start: usize) -> Parsed<'_> {
     let result = grammar::ProgramParser::new().parse(source, &sink, lexer);
     let program = result.map_err(|error| sink.unexpected(error, source.len() as u32)).ok();
     let found = sink.into_findings();
-    let is_cut = found.is_cut() || program.is_none();
+    let is_cut = found.is_cut || program.is_none();
     let mut program = program.unwrap_or_default();
     program.items.extend(found.misplaced);
     let diagnostics = parse_error::explain(source, start, found.diagnostics, &found.syntax_errors);

@@ -4,6 +4,7 @@
 use crate::ast::Item;
 use crate::codes::Code;
 use crate::diagnostic::Diagnostic;
+use crate::left_out::GivenUp;
 use crate::span::Span;
 use crate::token::Token;
 use lalrpop_util::{ErrorRecovery, ParseError};
@@ -76,17 +77,9 @@ pub(crate) struct Findings<'s> {
     /// Declarations that stand in a block.
     pub(crate) misplaced: Vec<Item<'s>>,
     /// What the parser left out in order to go on.
-    pub(crate) given_up: Vec<Span>,
-    has_ended_early: bool,
-}
-
-impl Findings<'_> {
+    pub(crate) given_up: GivenUp,
     /// Whether the text seems to lack its end. A block with a declaration in it lacks its brace.
-    pub(crate) fn is_cut(&self) -> bool {
-        let is_at_end = |error: &SyntaxError| error.found.is_none();
-        self.has_ended_early && self.misplaced.is_empty()
-            || self.syntax_errors.iter().any(is_at_end)
-    }
+    pub(crate) is_cut: bool,
 }
 
 /// What is known of the block that is being read.
@@ -261,12 +254,16 @@ impl<'s> Sink<'s> {
 
     /// All that was found.
     pub(crate) fn into_findings(self) -> Findings<'s> {
+        let is_unclosed = self.has_ended_early.get();
+        let misplaced = self.misplaced.into_inner();
+        let syntax_errors = self.syntax_errors.into_inner();
+        let is_at_end = |error: &SyntaxError| error.found.is_none();
         Findings {
             diagnostics: self.diagnostics.into_inner(),
-            syntax_errors: self.syntax_errors.into_inner(),
-            misplaced: self.misplaced.into_inner(),
-            given_up: self.given_up.into_inner(),
-            has_ended_early: self.has_ended_early.get(),
+            is_cut: is_unclosed && misplaced.is_empty() || syntax_errors.iter().any(is_at_end),
+            given_up: GivenUp { spans: self.given_up.into_inner(), is_unclosed },
+            syntax_errors,
+            misplaced,
         }
     }
 
