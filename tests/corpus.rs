@@ -155,7 +155,8 @@ fn compare(said: &Placed, found: &[Found]) -> Result<(), Failed> {
 }
 
 /// Make the change that a diagnostic suggests: it is then gone, and as far as its place there are
-/// fewer errors of its family. What follows, and what its names and types come to, is seen only now.
+/// fewer errors of its family. What follows, and what its names and types come to, is seen only
+/// now.
 fn check_suggestion(
     folder: &Folder,
     compiled: &Compiled,
@@ -186,7 +187,7 @@ fn check_suggestion(
         let length = compiled.sources.whole().len();
         move |one: &Diagnostic| length - one.primary.span.start as usize
     };
-    let rest = from_end(&compiled)(diagnostic);
+    let rest = from_end(compiled)(diagnostic);
     let before = errors_to(rest, diagnostic, &compiled.diagnostics, from_end(compiled));
     let after = errors_to(rest, diagnostic, &left.diagnostics, from_end(&left));
     if diagnostic.severity == Severity::Error && after.len() >= before.len() {

@@ -65,13 +65,15 @@ codes! {
         right "obvasm 1\n.function \"main\" start\n    .local \"n\" int\n    enter\n    \
                add.local.imm n, 1\n    halt"
     UnknownWord "A0103" "a name or word that nothing has"
-        why "An instruction, a directive, or one of a few words is not there, or a name is declared \
+        why "An instruction, a directive, or one of a few words is not there, or a name is \
+               declared \
              by no line of the text. A label is seen in its function alone."
         wrong "obvasm 1\n.function \"main\" start\n    enter\n    checkpoint ready\n    halt"
         right "obvasm 1\n.checkpoint \"ready\"\n.function \"main\" start\n    enter\n    \
                checkpoint ready\n    halt"
     Number "A0104" "a number that is none, or does not fit"
-        why "A number stands here, within the range of what it is for. An integer is a whole number \
+        why "A number stands here, within the range of what it is for. An integer is a whole \
+               number \
              of 64 bits; a real is decimal, or `0x` and the bits of one."
         wrong "obvasm 1\n.function \"main\" start\n    .local \"n\" int\n    enter\n    \
                add.local.imm n, 9999999999\n    halt"
@@ -91,18 +93,21 @@ codes! {
         right "obvasm 1\n.error \"jam\" recoverable\n.function \"main\" start\n    enter\n    halt"
     Functions "A0202" "a function that is not whole"
         why "Functions cover the code without gaps, in order; the first is the start; each begins \
-             with `enter` and ends with `return`, the start with `halt`, and has neither elsewhere; \
+             with `enter` and ends with `return`, the start with `halt`, and has neither \
+               elsewhere; \
              locals and three words a counter fit 256 slots."
         wrong "obvasm 1\n.function \"main\" start\n    halt"
         right "obvasm 1\n.function \"main\" start\n    enter\n    halt"
     Operands "A0203" "an operand that is out of range"
-        why "Every index is in the range of its table; a function that is called has the parameters \
+        why "Every index is in the range of its table; a function that is called has the \
+               parameters \
              that are passed, and is not the start."
         wrong "obvasm 1\n.function \"main\" start\n    enter\n    call #0\n    halt"
         right "obvasm 1\n.function \"main\" start\n    enter\n    call #1\n    halt\n.function \
                \"rest\" sequence\n    enter\n    return"
     Statements "A0204" "a statement that does not come out even"
-        why "Code is a row of statements: pure instructions that touch the operand stack alone, and \
+        why "Code is a row of statements: pure instructions that touch the operand stack alone, \
+               and \
              one effect that takes what they leave and knows how many they are. Between statements \
              the stack is empty, and types fit."
         wrong "obvasm 1\n.function \"main\" start\n    .local \"n\" int\n    enter\n    push.bool \
@@ -120,8 +125,12 @@ codes! {
     Loops "A0206" "a counted loop that is not whole"
         why "`for.enter`, `for.top`, `for.next` and `for.exit` come in this order, the pairs side \
              by side; nothing jumps in from outside; loops that overlap have different counters."
-        wrong "obvasm 1\n.function \"main\" start\n    .local \"n\" int\n    .counters 1\n    enter\n    push.int 1\n    push.int 2\n    for.enter 0, d\nt:\n    for.top 0\n    for.next 0, t\n    add.local.imm n, 1\nd:\n    for.exit 0\n    halt"
-        right "obvasm 1\n.function \"main\" start\n    .local \"n\" int\n    .counters 1\n    enter\n    push.int 1\n    push.int 2\n    for.enter 0, d\nt:\n    for.top 0\n    add.local.imm n, 1\n    for.next 0, t\nd:\n    for.exit 0\n    halt"
+        wrong "obvasm 1\n.function \"main\" start\n    .local \"n\" int\n    .counters 1\n    \
+               enter\n    push.int 1\n    push.int 2\n    for.enter 0, d\nt:\n    for.top 0\n    \
+               for.next 0, t\n    add.local.imm n, 1\nd:\n    for.exit 0\n    halt"
+        right "obvasm 1\n.function \"main\" start\n    .local \"n\" int\n    .counters 1\n    \
+               enter\n    push.int 1\n    push.int 2\n    for.enter 0, d\nt:\n    for.top 0\n    \
+               add.local.imm n, 1\n    for.next 0, t\nd:\n    for.exit 0\n    halt"
     Updates "A0207" "an update that reads what it changes"
         why "An update such as `x += e` is undone by `x -= e`, which is its inverse only where `e` \
              does not read `x`."
@@ -133,7 +142,8 @@ codes! {
         why "`block.begin` and its end nest, and nothing jumps in or out; a function that takes a \
              block's place has for parameters the first locals of the function around the block."
         wrong "obvasm 1\n.function \"main\" start\n    enter\n    block.begin\n    halt"
-        right "obvasm 1\n.function \"main\" start\n    enter\na:\n    block.begin\n    block.skip a\n    halt"
+        right "obvasm 1\n.function \"main\" start\n    enter\na:\n    block.begin\n    block.skip \
+               a\n    halt"
     SourceMap "A0209" "a source map that is out of order"
         why "The entries of a source map ascend, and lie within the source files that the module \
              carries, as do the places where it speaks of its workcell."
@@ -141,10 +151,12 @@ codes! {
         right "obvasm 1\n.function \"main\" start\n    enter\n    halt"
     Tasks "A0210" "a fork that is not whole"
         why "`fork`, `fork.next` and `fork.join` nest; a fork has at most 16 branches; nothing \
-             jumps into or out of one; `fork.leave` names the join of the innermost fork that holds \
+             jumps into or out of one; `fork.leave` names the join of the innermost fork that \
+               holds \
              it; counted loops of different branches have different counters."
         wrong "obvasm 1\n.function \"main\" start\n    enter\n    fork.next\n    halt"
-        right "obvasm 1\n.function \"main\" start\n    enter\nf:\n    fork j\n    fork.next\nj:\n    fork.join f\n    halt"
+        right "obvasm 1\n.function \"main\" start\n    enter\nf:\n    fork j\n    fork.next\n\
+               j:\n    fork.join f\n    halt"
     Bytes "A0301" "bytes that are no module"
         why "The file ends in `.obc`, or begins as a module does, and is none: it was cut off or \
              changed, or made by another version. Compile the program again."

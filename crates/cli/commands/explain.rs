@@ -16,8 +16,8 @@ const COLUMNS: usize = 80;
 
 #[derive(clap::Args)]
 pub(crate) struct Arguments {
-    /// A mnemonic such as `move.joint`, or a code such as `E0201`, `C0102` or `P0501`; without one, the
-    /// codes are listed.
+    /// A mnemonic such as `move.joint`, or a code such as `E0201`, `C0102` or `P0501`; without one,
+    /// the codes are listed.
     word: Option<String>,
     /// For machines: JSON Lines, an object a code or opcode and a summary last.
     #[arg(long)]

@@ -48,10 +48,10 @@ pub fn page(others: &[Entry]) -> String {
     let mut page = format!(
         "# Diagnostics\n\n{}\n\n{}\n\n```\n{ALLOW_EXAMPLE}```\n\n{}\n\n| code | |\n| --- | --- |\n",
         set(
-            "Every message about a program (`E` and `W`), a workcell file or what it lacks (`C`), and \
-             assembly text or a module (`A`) has a code, which never means anything else. `obverse \
-             explain CODE` shows what stands here. This page is written by `UPDATE=1 cargo test \
-             --test codes`."
+            "Every message about a program (`E` and `W`), a workcell file or what it lacks (`C`), \
+             and assembly text or a module (`A`) has a code, which never means anything else. \
+             `obverse explain CODE` shows what stands here. This page is written by `UPDATE=1 \
+             cargo test --test codes`."
         ),
         set(
             "A warning that is meant is allowed, for the statement or declaration that follows, or \

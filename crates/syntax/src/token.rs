@@ -216,7 +216,8 @@ impl Token {
     }
 
     /// Whether what follows on the line is an operand: the `x` of `if x = 3` is none that is
-    /// assigned, nor the `lamp` of `set lamp = high`. The token before tells whether a word such as `when` is a name.
+    /// assigned, nor the `lamp` of `set lamp = high`. The token before tells whether a word such as
+    /// `when` is a name.
     pub(crate) fn wants_operand(self, before: Self) -> bool {
         use Token::*;
         match self {

@@ -69,15 +69,20 @@ codes! {
         right "[arm]\nhome_rad = [0, -1.5, 1.5, 0, 0, 0]"
     UnknownName "C0104" "a name or number that the file gives to nothing"
         why "Tools, items and fixtures are named by tables of the file, and outputs and inputs are \
-             numbered from 0 to below the count of their table. A thing stands on a fixture that is \
+             numbered from 0 to below the count of their table. A thing stands on a fixture that \
+               is \
              described above it."
-        wrong "[arm]\nhome_rad = [0, -1.5, 1.5, 0, 0, 0]\n[inputs]\ncount = 2\n[[inputs.rule]]\ninput = 2\nholding = true"
-        right "[arm]\nhome_rad = [0, -1.5, 1.5, 0, 0, 0]\n[inputs]\ncount = 2\n[[inputs.rule]]\ninput = 1\nholding = true"
+        wrong "[arm]\nhome_rad = [0, -1.5, 1.5, 0, 0, 0]\n[inputs]\ncount = 2\n[[inputs.rule]]\n\
+               input = 2\nholding = true"
+        right "[arm]\nhome_rad = [0, -1.5, 1.5, 0, 0, 0]\n[inputs]\ncount = 2\n[[inputs.rule]]\n\
+               input = 1\nholding = true"
     Twice "C0105" "something that is there twice"
         why "Tools, items, fixtures and feeders each have names of their own, a line of outputs or \
              inputs is described once, and an item comes from one feeder."
-        wrong "[arm]\nhome_rad = [0, -1.5, 1.5, 0, 0, 0]\n[[tool]]\nname = \"a\"\n[[tool]]\nname = \"a\""
-        right "[arm]\nhome_rad = [0, -1.5, 1.5, 0, 0, 0]\n[[tool]]\nname = \"a\"\n[[tool]]\nname = \"b\""
+        wrong "[arm]\nhome_rad = [0, -1.5, 1.5, 0, 0, 0]\n[[tool]]\nname = \"a\"\n[[tool]]\nname \
+               = \"a\""
+        right "[arm]\nhome_rad = [0, -1.5, 1.5, 0, 0, 0]\n[[tool]]\nname = \"a\"\n[[tool]]\nname \
+               = \"b\""
     TooMany "C0106" "more than there may be"
         why "A workcell has limits, so that it is simulated in reasonable time and memory: of \
              items, fixtures, tools, parts of a body, lines, changes of an input, and of the file \
