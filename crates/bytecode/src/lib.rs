@@ -2,7 +2,8 @@
 //!
 //! [`module`] is the data ([`fault`] what it says of faults), [`codec`] its bytes, [`builder`] how
 //! code is put together, [`text`] the assembler and disassembler, [`mod@verify`] what a machine may
-//! rely on, [`code`] the codes of what is wrong. Knows nothing of source languages, tapes or robots.
+//! rely on, [`code`] the codes of what is wrong. Knows nothing of source languages, tapes or
+//! robots.
 
 pub mod builder;
 pub mod code;

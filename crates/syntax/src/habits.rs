@@ -130,6 +130,11 @@ const ROWS: &[Row] = &[
         help: "write `throw`",
         then: Then::As(Token::Throw, None),
     },
+    Row {
+        words: &["parallel", "par", "concurrent", "concurrently", "simultaneously", "cobegin"],
+        help: "write `fork`, with `and` between its branches: `fork { .. } and { .. }`",
+        then: Then::As(Token::Fork, None),
+    },
     Row { words: &["let", "const"], help: "write `var`", then: Then::As(Token::Var, None) },
 ];
 
@@ -163,7 +168,7 @@ pub(crate) fn of(word: &str, rest: &str) -> Option<Habit> {
     if let Some(habit) = numbered(&plain, rest) {
         return Some(habit);
     }
-    if plain == "wait" && word != "wait" && matches!(next, "SEC" | "FOR") {
+    if plain == "wait" && word != "wait" && matches!(next, "SEC" | "FOR" | "DI" | "RI") {
         let instead = if next == "SEC" { "0.5 s" } else { "until input 3 high for up to 2 s" };
         return Some(said(format!("write `wait {instead}`"), Then::NextLine));
     }

@@ -18,10 +18,6 @@ const REVERSES: [&str; 9] = [
     "compensate",
 ];
 
-/// What begins branches elsewhere.
-const FORKS: [&str; 6] =
-    ["parallel", "par", "concurrent", "concurrently", "simultaneously", "cobegin"];
-
 const REPLACED: &str = "what is run in reverse in place of a block stands behind it: `do { .. } in \
                         reverse { .. }`";
 
@@ -92,7 +88,7 @@ impl Unexpected<'_> {
         is_branch.then(|| said("write `fork { .. } and { .. }`").replacing(self.here(), "and "))
     }
 
-    /// `undo {`, `reverse 2`, `parallel {`.
+    /// `undo {`, `reverse 2`.
     fn reverse_as_statement(&self) -> Option<Advice> {
         if !self.expectation.allows_statement() {
             return None;
@@ -105,9 +101,6 @@ impl Unexpected<'_> {
                 "a program goes back when an error says so: `error NAME { recover by reversing up \
                  to 3 actions }`",
             )),
-            word if is_block && FORKS.contains(&word) => {
-                Some(said("write `fork { .. } and { .. }`"))
-            }
             _ => None,
         }
     }
