@@ -7,13 +7,16 @@
 //! its `main` has no inverse. What is meant is never written by a switch: goldens are for how it
 //! looks.
 //!
-//! A change that a diagnostic suggests is made: what it was suggested for is then gone.
+//! A change that a diagnostic suggests is made: what it was suggested for is then gone, and as far
+//! as its place there are fewer errors.
 
 use libtest_mimic::{Arguments, Failed, Trial};
-use obverse_compiler::{Compiled, MAX_IMPORT_DEPTH, MAX_IMPORTED, NoInverse, invert_files};
+use obverse_compiler::{
+    Compiled, MAX_IMPORT_DEPTH, MAX_IMPORTED, NoInverse, compile_files, invert_files,
+};
 use obverse_syntax::MAX_SOURCE_BYTES;
 use obverse_syntax::codes::Code;
-use obverse_syntax::diagnostic::Diagnostic;
+use obverse_syntax::diagnostic::{Diagnostic, Severity};
 use obverse_syntax::source::LineIndex;
 use obverse_syntax::sources::{Place, Sources};
 use obverse_testkit::files::Folder;
@@ -45,6 +48,7 @@ fn main() -> ExitCode {
         })
         .collect();
     trials.push(Trial::test("too large to be kept", too_large_to_be_kept));
+    trials.push(Trial::test("a word left out leaves no name unknown", no_name_is_lost));
     trials.push(Trial::test("every code occurs", every_code_occurs));
     trials.push(Trial::test("there are enough", there_are_enough));
     libtest_mimic::run(&arguments, trials).exit_code()
@@ -150,7 +154,9 @@ fn compare(said: &Placed, found: &[Found]) -> Result<(), Failed> {
     Err(format!("it says\n  {said:?}\nand there are\n  {told}").into())
 }
 
-/// Make the change that a diagnostic suggests: it is then gone.
+/// Make the change that a diagnostic suggests: it is then gone, and as far as its place there are
+/// fewer errors of its family. What follows, and what its names and types come to, is seen only
+/// now.
 fn check_suggestion(
     folder: &Folder,
     compiled: &Compiled,
@@ -173,10 +179,37 @@ fn check_suggestion(
             && one.primary.span.start == diagnostic.primary.span.start
             && one.message == diagnostic.message
     };
-    match left.diagnostics.iter().find(is_same) {
-        Some(same) => Err(format!("`{}` does not mend: {}", suggestion.text, same.message).into()),
-        None => Ok(()),
+    if let Some(same) = left.diagnostics.iter().find(is_same) {
+        return Err(format!("`{}` does not mend: {}", suggestion.text, same.message).into());
     }
+    // Measured from the end, which the change does not move.
+    let from_end = |compiled: &Compiled| {
+        let length = compiled.sources.whole().len();
+        move |one: &Diagnostic| length - one.primary.span.start as usize
+    };
+    let rest = from_end(compiled)(diagnostic);
+    let before = errors_to(rest, diagnostic, &compiled.diagnostics, from_end(compiled));
+    let after = errors_to(rest, diagnostic, &left.diagnostics, from_end(&left));
+    if diagnostic.severity == Severity::Error && after.len() >= before.len() {
+        let why = format!("`{}` for {} leaves", suggestion.text, diagnostic.message);
+        return Err(format!("{why}\n  {}", after.join("\n  ")).into());
+    }
+    Ok(())
+}
+
+/// The errors of the family of a diagnostic, such as `E00`, that begin so far from the end or
+/// further. That a statement then stands outside of a sequence is another's fault.
+fn errors_to<'d>(
+    rest: usize,
+    of: &Diagnostic,
+    diagnostics: &'d [Diagnostic],
+    from_end: impl Fn(&Diagnostic) -> usize,
+) -> Vec<&'d str> {
+    let family = |one: &Diagnostic| one.code.as_str()[..3].to_owned();
+    let is_counted = |one: &&Diagnostic| {
+        family(one) == family(of) && one.code != Code::StatementOutside && from_end(one) >= rest
+    };
+    diagnostics.iter().filter(is_counted).map(|one| one.message.as_str()).collect()
 }
 
 /// A text of more than there may be, files that import one another in too long a row, and too many
@@ -213,6 +246,35 @@ fn refused_once(folder: &mut Folder, name: &str, at: (&str, usize)) -> Result<()
     let compiled = compile(folder, name);
     let said = vec![(at.0.to_owned(), at.1, Code::TooManyImports.to_string())];
     compare(&said, &found_in(&compiled.sources, &compiled.diagnostics))
+}
+
+/// Of the programs for people a word is left out, each in turn. Where that is a mistake of grammar,
+/// no name is said to be unknown: all of them are declared.
+fn no_name_is_lost() -> Result<(), Failed> {
+    let programs = concat!(env!("CARGO_MANIFEST_DIR"), "/programs");
+    let folder = Folder::read(Path::new(programs));
+    let (mut mistakes, mut lost) = (0, Vec::new());
+    for (name, text) in folder.0.iter().filter(|(name, _)| name.ends_with(".obv")) {
+        let words: Vec<&str> = text.split_inclusive([' ', '\n']).collect();
+        for (index, word) in words.iter().enumerate().filter(|(_, word)| !word.trim().is_empty()) {
+            let end = if word.ends_with('\n') { "\n" } else { " " };
+            let cut = [&words[..index], &[end], &words[index + 1..]].concat().concat();
+            let found = compile_files(name, &cut, &mut folder.clone()).diagnostics;
+            if !found.iter().any(|one| one.code.as_str().starts_with("E00")) {
+                continue;
+            }
+            mistakes += 1;
+            let unknown = found.iter().filter(|one| one.code == Code::UnknownName);
+            lost.extend(unknown.map(|one| {
+                let line = words[..index].concat().lines().count();
+                format!("{name}:{line} without `{}`: {}", word.trim(), one.message)
+            }));
+        }
+    }
+    if mistakes < 100 || !lost.is_empty() {
+        return Err(format!("{} of {mistakes}\n  {}", lost.len(), lost.join("\n  ")).into());
+    }
+    Ok(())
 }
 
 fn every_code_occurs() -> Result<(), Failed> {

@@ -24,13 +24,17 @@ pub(crate) fn read(path: &Path) -> Result<Vec<u8>, String> {
 /// Why not, in words that follow the file's name.
 pub(crate) fn read_at_most(path: &Path, most: u64) -> Result<Vec<u8>, String> {
     let cannot = |error: std::io::Error| format!("cannot be read: {}", plain(&error));
-    if fs::metadata(path).map_err(cannot)?.is_dir() {
+    // Before it is opened, since opening a pipe waits for who writes to it.
+    let kind = fs::metadata(path).map_err(cannot)?;
+    if kind.is_dir() {
         return Err("this is a folder; name a file in it".to_owned());
+    }
+    if !kind.is_file() {
+        return Err("this is no regular file; save what it gives to one".to_owned());
     }
     let mut bytes = Vec::new();
     let mut file = File::open(path).map_err(cannot)?;
     let before = file.metadata().map_err(cannot)?;
-    // What a device or a pipe will give cannot be asked beforehand.
     file.by_ref().take(most.saturating_add(1)).read_to_end(&mut bytes).map_err(cannot)?;
     let length = bytes.len() as u64;
     if length > most {

@@ -4,7 +4,7 @@
 use crate::load::{Program, Workcell};
 use crate::problem::Message;
 use obverse_bytecode::{Mention, Mentioned, Module};
-use obverse_sim::CellPlaces;
+use obverse_sim::{CellCode, CellPlaces};
 use obverse_vm::LinkError;
 
 /// So many names of what is there are told.
@@ -19,6 +19,15 @@ pub(crate) fn messages(
     let places = workcell.text.as_deref().map(CellPlaces::of);
     let lacking = Lacking { program, workcell, places };
     errors.iter().map(|error| lacking.message(error)).collect()
+}
+
+fn code(error: &LinkError) -> CellCode {
+    match error {
+        LinkError::Item { .. } => CellCode::NoItem,
+        LinkError::Tool { .. } => CellCode::NoTool,
+        LinkError::Output { .. } => CellCode::NoOutput,
+        LinkError::Input { .. } => CellCode::NoInput,
+    }
 }
 
 struct Lacking<'p> {
@@ -52,7 +61,7 @@ impl<'p> Lacking<'p> {
                 self.of_line(self.first(is_named), *pc, text)
             }
         };
-        message.with(self.in_workcell(error))
+        message.coded(code(error).as_str()).with(self.in_workcell(error))
     }
 
     fn module(&self) -> &'p Module {

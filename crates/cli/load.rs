@@ -4,9 +4,9 @@ use crate::files::{self, ProgramFolder};
 use crate::problem::{Diagnosed, Message, Problem};
 use crate::{lacking, show};
 use obverse_bytecode::codec::MODULE;
-use obverse_bytecode::{Mentioned, Module, Verified, assemble, decode, verify};
+use obverse_bytecode::{Mentioned, Module, ModuleCode, Verified, assemble, decode, verify};
 use obverse_compiler::{Action, Compiled, Defaults, compile_with, library};
-use obverse_sim::{Cell, Sim};
+use obverse_sim::{Cell, CellCode, Sim};
 use obverse_syntax::sources::Sources;
 use obverse_vm::Machine;
 use std::path::{Path, PathBuf};
@@ -85,7 +85,10 @@ fn module_with(
         return Err(Problem::of_file(path, why));
     }
     if raw.starts_with(&MODULE.magic) || extension == "obc" {
-        let module = decode(&raw).map_err(|error| Problem::of_file(path, error))?;
+        let module = decode(&raw).map_err(|error| {
+            let message = Message::of_file(path, error).coded(ModuleCode::Bytes.as_str());
+            Problem::several(vec![message])
+        })?;
         return Ok((module, None));
     }
     match extension {
@@ -137,11 +140,11 @@ fn compiled(
 
 fn assembled(path: &Path, raw: &[u8]) -> Result<Module, Problem> {
     let text = std::str::from_utf8(raw)
-        .map_err(|error| Problem::of_file(path, format!("not text: {error}")))?;
+        .map_err(|error| not_text(path, &error, ModuleCode::Header.as_str()))?;
     assemble(text).map_err(|errors| {
         let message = |error: &obverse_bytecode::AsmError| {
             let place = (error.line, error.column);
-            Message::of_file(path, &error.message).at(Some(place))
+            Message::of_file(path, &error.message).at(Some(place)).coded(error.code.as_str())
         };
         Problem::several(errors.iter().map(message).collect())
     })
@@ -170,7 +173,10 @@ pub(crate) fn quietly(path: &Path) -> Result<Program, Problem> {
 
 fn verified(path: &Path, module: Module, source: Option<Diagnosed>) -> Result<Program, Problem> {
     let verified = verify(module).map_err(|errors| {
-        Problem::several(errors.iter().map(|error| Message::of_file(path, error)).collect())
+        let message = |error: &obverse_bytecode::VerifyError| {
+            Message::of_file(path, error).coded(error.rule.code().as_str())
+        };
+        Problem::several(errors.iter().map(message).collect())
     })?;
     Ok(Program { path: path.to_owned(), verified, source })
 }
@@ -207,13 +213,19 @@ pub(crate) fn cell(program: &Program, named: Option<&Path>) -> Result<(Cell, Wor
         None => named_by(program, problem),
     })?;
     let text = String::from_utf8(raw)
-        .map_err(|error| Problem::of_file(&path, format!("not text: {error}")))?;
+        .map_err(|error| not_text(&path, &error.utf8_error(), CellCode::Toml.as_str()))?;
     let cell = Cell::parse(&text).map_err(|error| {
         let place = (error.line, error.column);
-        Problem::several(vec![Message::of_file(&path, error.message).at(Some(place))])
+        let message = Message::of_file(&path, error.message).at(Some(place));
+        Problem::several(vec![message.coded(error.code.as_str())])
     })?;
     let file = Workcell { name: path.display().to_string(), text: Some(text) };
     Ok((cell, file))
+}
+
+fn not_text(path: &Path, error: &std::str::Utf8Error, code: &'static str) -> Problem {
+    let message = Message::of_file(path, format!("not text: {error}"));
+    Problem::several(vec![message.coded(code)])
 }
 
 /// What is wrong with a workcell file, and where the program names it.

@@ -24,6 +24,9 @@ pub(crate) struct Message {
     pub(crate) place: Option<(usize, usize)>,
     /// What is wrong there.
     pub(crate) text: String,
+    /// The code that `obverse explain` knows, of what is wrong with a workcell or with assembly;
+    /// none of what is wrong with the command line or with reading a file.
+    pub(crate) code: Option<&'static str>,
     /// Further places that belong to it.
     pub(crate) also: Vec<Message>,
 }
@@ -79,7 +82,7 @@ impl Diagnosed {
 impl Message {
     /// A sentence about no file.
     pub(crate) fn new(text: impl Into<String>) -> Self {
-        Self { file: None, place: None, text: text.into(), also: Vec::new() }
+        Self { file: None, place: None, text: text.into(), code: None, also: Vec::new() }
     }
 
     /// A sentence about a file.
@@ -90,6 +93,11 @@ impl Message {
     /// The same at a line and column, if they are known.
     pub(crate) fn at(self, place: Option<(usize, usize)>) -> Self {
         Self { place, ..self }
+    }
+
+    /// The same with its code.
+    pub(crate) fn coded(self, code: &'static str) -> Self {
+        Self { code: Some(code), ..self }
     }
 
     /// The same with a further place, if there is one.

@@ -24,8 +24,13 @@ pub(crate) fn problem(problem: &Problem) {
         diagnostics(diagnosed);
     }
     let messages: Vec<String> =
-        problem.messages.iter().map(|message| format!("error: {message}\n")).collect();
+        problem.messages.iter().map(|message| format!("{}: {message}\n", error(message))).collect();
     to_stderr(printable(&messages.concat()).as_bytes());
+}
+
+/// `error`, with the code if the message has one.
+fn error(message: &Message) -> String {
+    message.code.map_or_else(|| "error".to_owned(), |code| format!("error[{code}]"))
 }
 
 /// Show the diagnostics of a program, and how many there are.
@@ -241,7 +246,7 @@ pub(crate) fn diagnostics_json(diagnosed: &Diagnosed) -> Vec<Value> {
     diagnosed.diagnostics.iter().map(object).collect()
 }
 
-/// A message that is no diagnostic of a source text, for machines: without a code.
+/// A message that is no diagnostic of a source text, for machines.
 fn message_json(message: &Message) -> Value {
     let label = |also: &Message| {
         let (line, column) = also.place.unzip();
@@ -253,7 +258,7 @@ fn message_json(message: &Message) -> Value {
         "file": message.file,
         "line": message.place.map(|(line, _)| line),
         "column": message.place.map(|(_, column)| column),
-        "code": null,
+        "code": message.code,
         "severity": "error",
         "message": message.text,
         "labels": labels,

@@ -1,6 +1,8 @@
 //! Programs, workcells and command lines that are wrong.
 
 use crate::support::Bench;
+use obverse_bytecode::ModuleCode;
+use obverse_sim::CellCode;
 use serde_json::{Value, json};
 
 #[test]
@@ -82,7 +84,7 @@ fn devices_without_an_end_are_not_read_to_it() {
         return;
     }
     let bench = Bench::new("devices");
-    bench.refuses(&["check", "/dev/zero"], &["/dev/zero: larger than 256 MiB"]);
+    bench.refuses(&["check", "/dev/zero"], &["/dev/zero: this is no regular file"]);
 }
 
 #[test]
@@ -167,4 +169,74 @@ fn machines_are_told_what_is_wrong_with_the_input() {
     let lacking = ["run", "--json", "tower.obv", "--cell", "pin_cell.toml"];
     assert_eq!(bench.refuses_as_json(&lacking).len(), 3);
     bench.refuses_as_json(&["run", "--json", "tower.obv", "--tape", "tower.obv"]);
+}
+
+/// What opens it would wait for who writes to it.
+#[cfg(unix)]
+#[test]
+fn a_pipe_in_place_of_a_file_is_not_waited_for() {
+    let bench = Bench::new("pipes_in");
+    for name in ["pipe.obv", "pipe.toml"] {
+        let made = std::process::Command::new("mkfifo").arg(bench.path(name)).status();
+        assert!(made.expect("mkfifo").success());
+    }
+    let said = "this is no regular file";
+    for command in ["check", "run", "fmt", "reach", "build", "dis"] {
+        let ran = bench.ends(2, &[command, "pipe.obv"]);
+        assert!(ran.stderr.contains(said), "{command}: {}", ran.stderr);
+    }
+    let ran = bench.ends(2, &["check", "bad_pin.obv", "--cell", "pipe.toml"]);
+    assert!(ran.stderr.contains(said), "{}", ran.stderr);
+}
+
+/// The codes of the diagnostics of `check`.
+fn codes(bench: &Bench, arguments: &[&str]) -> Vec<String> {
+    let ran = bench.run(&[&["check", "--json"], arguments].concat());
+    let diagnostics = ran.json().into_iter().filter(|one| one["type"] == "diagnostic");
+    diagnostics.map(|one| one["code"].as_str().unwrap_or("none").to_owned()).collect()
+}
+
+#[test]
+fn what_a_program_needs_and_its_workcell_lacks_has_the_code_of_its_page() {
+    let bench = Bench::new("codes_of_cells");
+    let needs = "item vial { keyframe above = [0, 0, 0] mm }\n\
+                 sequence main {\n  if input 3 { set 3 high }\n  \
+                 tool gripper { move 1 mm up }\n  move to vial.above\n}\n";
+    bench.write("needs.obv", needs);
+    for code in CellCode::ALL.iter().filter(|code| code.as_str().starts_with("C02")) {
+        bench.write("c.toml", code.wrong_example());
+        assert_eq!(codes(&bench, &["needs.obv", "--cell", "c.toml"]), [code.as_str()]);
+        bench.write("c.toml", code.right_example());
+        assert_eq!(codes(&bench, &["needs.obv", "--cell", "c.toml"]), [""; 0]);
+    }
+}
+
+#[test]
+fn whatever_is_wrong_with_a_file_has_a_code_that_is_explained() {
+    let bench = Bench::new("codes_of_files");
+    let mut seen = Vec::new();
+    for code in CellCode::ALL.iter().filter(|code| code.as_str().starts_with("C01")) {
+        bench.write("c.toml", code.wrong_example());
+        let found = codes(&bench, &["bad_pin.obv", "--cell", "c.toml"]);
+        assert_eq!(found, [code.as_str()]);
+        seen.extend(found);
+    }
+    for code in ModuleCode::ALL.iter().filter(|code| !code.wrong_example().is_empty()) {
+        bench.write("x.obvasm", code.wrong_example());
+        let found = codes(&bench, &["x.obvasm"]);
+        assert_eq!(found.first().map(String::as_str), Some(code.as_str()));
+        seen.extend(found);
+    }
+    bench.write("x.obc", "OBVERSE");
+    let found = codes(&bench, &["x.obc"]);
+    assert_eq!(found, [ModuleCode::Bytes.as_str()]);
+    seen.extend(found);
+    for code in seen {
+        let page = bench.ends(0, &["explain", &code]).stdout;
+        assert!(page.starts_with(&format!("{code}: ")), "{page}");
+    }
+    let all = bench.ends(0, &["explain"]).stdout;
+    let listed = |code: &str| all.lines().any(|line| line.starts_with(&format!("{code}  ")));
+    assert!(ModuleCode::ALL.iter().all(|code| listed(code.as_str())));
+    assert!(CellCode::ALL.iter().all(|code| listed(code.as_str())));
 }

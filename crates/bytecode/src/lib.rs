@@ -2,9 +2,11 @@
 //!
 //! [`module`] is the data ([`fault`] what it says of faults), [`codec`] its bytes, [`builder`] how
 //! code is put together, [`text`] the assembler and disassembler, [`mod@verify`] what a machine may
-//! rely on. Knows nothing of source languages, tapes or robots.
+//! rely on, [`code`] the codes of what is wrong. Knows nothing of source languages, tapes or
+//! robots.
 
 pub mod builder;
+pub mod code;
 pub mod codec;
 pub mod fault;
 pub mod module;
@@ -13,6 +15,7 @@ pub mod verify;
 mod wire;
 
 pub use builder::{CodeBuilder, Mark};
+pub use code::ModuleCode;
 pub use codec::{DecodeError, DecodeErrorKind, decode, encode, fingerprint};
 pub use fault::{Bounds, FaultName};
 pub use module::{

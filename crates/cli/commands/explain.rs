@@ -3,9 +3,12 @@
 use super::Result;
 use crate::problem::Problem;
 use crate::{Outcome, write};
+use obverse_bytecode::ModuleCode;
 use obverse_isa::{OPS, Opcode, reference};
 use obverse_preflight::Reason;
+use obverse_sim::CellCode;
 use obverse_syntax::codes::Code;
+use obverse_syntax::index::Entry;
 use serde_json::{Value, json};
 
 /// How wide prose is set.
@@ -13,8 +16,8 @@ const COLUMNS: usize = 80;
 
 #[derive(clap::Args)]
 pub(crate) struct Arguments {
-    /// A mnemonic such as `move.joint`, or a code such as `E0201` or `P0501`; without one, the
-    /// codes are listed.
+    /// A mnemonic such as `move.joint`, or a code such as `E0201`, `C0102` or `P0501`; without one,
+    /// the codes are listed.
     word: Option<String>,
     /// For machines: JSON Lines, an object a code or opcode and a summary last.
     #[arg(long)]
@@ -33,8 +36,8 @@ pub(crate) fn run(arguments: &Arguments) -> Result {
         write::out(&set(&reference::explain(opcode.info())));
         return Ok(Outcome::Done);
     }
-    if let Ok(code) = word.parse::<Code>() {
-        write::out(&set(code.explanation()));
+    if let Some(entry) = entry(word) {
+        write::out(&set(&entry.explanation()));
         return Ok(Outcome::Done);
     }
     if let Ok(reason) = word.parse::<Reason>() {
@@ -47,12 +50,12 @@ pub(crate) fn run(arguments: &Arguments) -> Result {
 /// Every code of a diagnostic and of a reason with its title, a line each.
 fn list(is_json: bool) {
     if is_json {
-        let codes = Code::ALL.iter().map(|code| of_code(*code));
+        let codes = entries().map(|entry| of_code(&entry));
         tell(codes.chain(Reason::ALL.iter().map(|reason| of_reason(*reason))));
         return;
     }
-    for code in Code::ALL {
-        write::line(&format!("{code}  {}", code.title()));
+    for Entry { code, title, .. } in entries() {
+        write::line(&format!("{code}  {title}"));
     }
     for reason in Reason::ALL {
         write::line(&format!("{}  {}", reason.code(), reason.title()));
@@ -74,19 +77,43 @@ fn as_json(word: &str) -> Result {
         tell(std::iter::once(of_reason(reason)));
         return Ok(Outcome::Done);
     }
-    let code: Code = word.parse().map_err(|_| unknown(word))?;
-    tell(std::iter::once(of_code(code)));
+    let entry = entry(word).ok_or_else(|| unknown(word))?;
+    tell(std::iter::once(of_code(&entry)));
     Ok(Outcome::Done)
 }
 
-fn of_code(code: Code) -> Value {
+/// What is known of the codes of programs, of workcells, and of assembly text and modules.
+fn entries() -> impl Iterator<Item = Entry> {
+    let cells = CellCode::ALL.iter().map(|code| Entry {
+        code: code.as_str(),
+        title: code.title(),
+        reason: code.reason(),
+        wrong: code.wrong_example(),
+        right: code.right_example(),
+    });
+    let modules = ModuleCode::ALL.iter().map(|code| Entry {
+        code: code.as_str(),
+        title: code.title(),
+        reason: code.reason(),
+        wrong: code.wrong_example(),
+        right: code.right_example(),
+    });
+    Code::ALL.iter().map(|code| Entry::from(*code)).chain(cells).chain(modules)
+}
+
+/// What is known of a code, however it is written.
+fn entry(word: &str) -> Option<Entry> {
+    entries().find(|entry| entry.code.eq_ignore_ascii_case(word))
+}
+
+fn of_code(entry: &Entry) -> Value {
     json!({
         "type": "code",
-        "code": code.as_str(),
-        "title": code.title(),
-        "explanation": code.explanation(),
-        "wrong": code.wrong_example(),
-        "right": code.right_example(),
+        "code": entry.code,
+        "title": entry.title,
+        "explanation": entry.explanation(),
+        "wrong": entry.wrong,
+        "right": entry.right,
     })
 }
 
@@ -109,7 +136,7 @@ fn tell(objects: impl Iterator<Item = Value>) {
 }
 
 fn unknown(word: &str) -> Problem {
-    let codes = Code::ALL.iter().map(|code| code.as_str());
+    let codes = entries().map(|entry| entry.code);
     let reasons = Reason::ALL.iter().map(|reason| reason.code());
     let words = OPS.iter().map(|row| row.mnemonic).chain(codes).chain(reasons);
     let near = obverse_syntax::nearest(word, words);

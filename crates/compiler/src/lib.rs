@@ -41,7 +41,7 @@ use effects::Effects;
 use load::Loaded;
 use obverse_bytecode::Module;
 use obverse_syntax::ast::Program;
-use obverse_syntax::diagnostic::{Diagnostic, Severity};
+use obverse_syntax::diagnostic::Diagnostic;
 use obverse_syntax::sources::Sources;
 use report::Reports;
 
@@ -118,8 +118,7 @@ fn compile_tree(
 fn compile_loaded(loaded: &Loaded, defaults: &Defaults) -> Built {
     let sources = &loaded.sources;
     let parsed = merge::parse(loaded);
-    let is_whole = parsed.diagnostics.iter().all(|found| found.severity != Severity::Error);
-    let reports = Reports::new(is_whole, Allows::of(sources, &parsed.program));
+    let reports = Reports::new(parsed.left_out, Allows::of(sources, &parsed.program));
     let (module, actions, mut reports) = compile_tree(sources, &parsed.program, defaults, reports);
     if let Some(module) = &module {
         shortfall::check(sources, &parsed.program, module, &mut reports);

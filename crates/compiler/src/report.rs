@@ -1,6 +1,7 @@
 //! Where what is wrong with a program is gathered. Knows nothing of what can be wrong.
 
 use crate::allow::Allows;
+use obverse_syntax::LeftOut;
 use obverse_syntax::codes::Code;
 use obverse_syntax::diagnostic::{Diagnostic, Severity};
 use obverse_syntax::span::Span;
@@ -17,14 +18,14 @@ const MAX_COMPARED: usize = 100_000;
 pub(crate) struct Reports {
     errors: Vec<Diagnostic>,
     warnings: Vec<Diagnostic>,
-    is_whole: bool,
+    /// What the tree lacks; none of a whole one.
+    left_out: Option<LeftOut>,
     allows: Allows,
     compared: usize,
 }
 
 /// What may be a consequence of a part that the parser has left out.
-const OF_ABSENCE: [Code; 9] = [
-    Code::UnknownName,
+const OF_ABSENCE: [Code; 8] = [
     Code::UnknownKeyframe,
     Code::UnknownCheckpoint,
     Code::NoMain,
@@ -36,16 +37,24 @@ const OF_ABSENCE: [Code; 9] = [
 ];
 
 impl Reports {
-    /// Nothing yet. If the tree is not whole, what its missing parts may have caused is not kept.
-    pub(crate) fn new(is_whole: bool, mut allows: Allows) -> Self {
+    /// Nothing yet. What may follow from what the tree lacks is not kept.
+    pub(crate) fn new(left_out: Option<LeftOut>, mut allows: Allows) -> Self {
         let errors = allows.take_mistakes();
-        Self { errors, warnings: Vec::new(), is_whole, allows, compared: 0 }
+        Self { errors, warnings: Vec::new(), left_out, allows, compared: 0 }
+    }
+
+    /// Keep that there is nothing of this name, unless it may have been left out.
+    pub(crate) fn add_unknown(&mut self, name: &str, diagnostic: Diagnostic) {
+        let may_be_there = |left_out: &LeftOut| left_out.may_declare(name);
+        if !self.left_out.as_ref().is_some_and(may_be_there) {
+            self.add(diagnostic);
+        }
     }
 
     /// Keep a diagnostic.
     pub(crate) fn add(&mut self, diagnostic: Diagnostic) {
         let is_warning = diagnostic.severity == Severity::Warning;
-        if !self.is_whole && (is_warning || OF_ABSENCE.contains(&diagnostic.code)) {
+        if !self.is_whole() && (is_warning || OF_ABSENCE.contains(&diagnostic.code)) {
             return;
         }
         let is_meant =
@@ -95,7 +104,7 @@ impl Reports {
 
     /// Whether the tree is whole.
     pub(crate) fn is_whole(&self) -> bool {
-        self.is_whole
+        self.left_out.is_none()
     }
 
     /// Whether there may have been warnings that were not kept.
@@ -106,7 +115,7 @@ impl Reports {
     /// Warn of each `allow` that allows nothing, now that all warnings have come. With a mistake
     /// in the program not all of them have.
     pub(crate) fn warn_of_useless(&mut self) {
-        if self.is_whole && !self.has_errors() {
+        if self.is_whole() && !self.has_errors() {
             let useless = self.allows.useless();
             useless.into_iter().for_each(|diagnostic| self.add(diagnostic));
         }

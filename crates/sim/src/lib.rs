@@ -40,7 +40,7 @@ mod truth;
 mod turned;
 mod world;
 
-pub use cell::{Cell, CellError, CellPlaces};
+pub use cell::{Cell, CellCode, CellError, CellPlaces};
 pub use faults::{FaultPlan, StopKind};
 pub use plan::Plan;
 pub use seating::Seating;

@@ -1,6 +1,8 @@
 //! What to do about a token that cannot stand where it stands: the help of a syntax error, and the
 //! change of the text where one is plain. It knows what is expected and what stands around.
 
+mod reversal;
+
 use crate::diagnostic::Suggestion;
 use crate::expectation::Expectation;
 use crate::nearest::nearest;
@@ -42,7 +44,8 @@ pub(crate) struct Unexpected<'e> {
 impl Unexpected<'_> {
     /// What to do about it, if that can be said.
     pub(crate) fn advice(&self) -> Option<Advice> {
-        self.as_statement()
+        self.of_reversal()
+            .or_else(|| self.as_statement())
             .or_else(|| self.level())
             .or_else(|| self.after_word())
             .or_else(|| self.left_out())
@@ -77,13 +80,10 @@ impl Unexpected<'_> {
             return None;
         }
         let text = self.text();
-        let next = self.surroundings.after(self.span().end).map(|token| token.token);
-        if self.found == Token::Name && next == Some(Token::OpenParenthesis) {
-            let call = format!("call {}", shortened(text));
-            let help = format!("to call an action write `{call}(..)`");
-            return Some(said(help).replacing(self.span(), &call));
+        if self.found.can_be_name() && self.next() == Some(Token::OpenParenthesis) {
+            return Some(self.called_like_a_function());
         }
-        if self.found == Token::Name
+        if self.found.can_be_name()
             && let Some(statement) = self.statement_with(text)
         {
             return Some(self.instead(&statement));
@@ -101,24 +101,69 @@ impl Unexpected<'_> {
         }))
     }
 
+    /// `pick(vial)`, `grip()`
+    fn called_like_a_function(&self) -> Advice {
+        let text = self.text();
+        let call = format!("call {}", shortened(text));
+        match self.statement_with(text) {
+            Some(statement) if statement != call => {
+                let help = said(format!("write `{statement}`"));
+                let [open, close] = match self.surroundings.two_after(self.span().end) {
+                    Some(brackets) => brackets,
+                    None => return help,
+                };
+                let is_empty =
+                    (open.token, close.token) == (Token::OpenParenthesis, Token::CloseParenthesis);
+                match is_empty {
+                    true => help.replacing(self.span().to(close.span), &statement),
+                    false => help,
+                }
+            }
+            _ => {
+                said(format!("to call an action write `{call}(..)`")).replacing(self.span(), &call)
+            }
+        }
+    }
+
+    /// Whether something follows on its line.
+    fn goes_on(&self) -> bool {
+        let next = self.surroundings.after(self.span().end);
+        next.is_some_and(|token| !self.surroundings.begins_line(token.span.start))
+    }
+
     fn begins_line(&self) -> bool {
         self.surroundings.begins_line(self.span().start)
     }
 
     /// What stands for `high` and `low` elsewhere.
     fn level(&self) -> Option<Advice> {
-        if !self.expectation.allows("high") {
+        if !self.expectation.wants("high") {
             return None;
         }
-        match self.text().to_lowercase().as_str() {
+        if self.begins_line() || matches!(self.found, Token::CloseBrace | Token::Semicolon) {
+            return self.no_level();
+        }
+        let text = self.text().to_lowercase();
+        match text.as_str() {
+            // The `=` behind it is what is wrong.
+            _ if self.found == Token::Assigned => None,
             "1" | "true" | "on" | "high" => Some(self.instead("high")),
             "0" | "false" | "off" | "low" => Some(self.instead("low")),
-            "to" | "=" | "==" | "is" | ":" | "," => {
+            "to" | "=" | "==" | "is" | ":" | "," if self.goes_on() => {
                 let help = format!("leave out the `{}`", self.text());
                 Some(said(help).replacing(self.span(), ""))
             }
             _ => None,
         }
+    }
+
+    /// `set lamp`, and nothing on its line.
+    fn no_level(&self) -> Option<Advice> {
+        let signal = self.surroundings.before(self.span().start)?;
+        let verb = self.surroundings.before(signal.span.start)?;
+        let name = shortened(self.surroundings.text(signal.span));
+        let help = format!("say which level: `set {name} high` or `set {name} low`");
+        (verb.token == Token::Set).then(|| said(help))
     }
 
     /// By the word before.
@@ -132,6 +177,11 @@ impl Unexpected<'_> {
             "wait" if self.found == Token::For => {
                 "write `wait until input 3 high for up to 2 s`".to_owned()
             }
+            "repeat" if self.found == Token::Until => {
+                "write `while not (CONDITION) { .. }`, or `loop { .. if CONDITION { break } }`"
+                    .to_owned()
+            }
+            "until" if self.expectation.is_only("input") => return Some(self.wait_for_value()),
             "speed" if is_number => {
                 "a speed is a word: very slow, slow, normal, fast, very fast".to_owned()
             }
@@ -150,21 +200,31 @@ impl Unexpected<'_> {
         }))
     }
 
+    /// `wait until x > 3`
+    fn wait_for_value(&self) -> Advice {
+        if self.surroundings.declared_by(self.text()) == Some(Token::Input) {
+            let help = format!("write `input {}`", shortened(self.text()));
+            return said(help).replacing(self.here(), "input ");
+        }
+        said(
+            "an input is waited for, `wait until input 3 high for up to 2 s`; for a value write \
+             `while not (CONDITION) { wait 0.1 s }`",
+        )
+    }
+
     /// A word that is left out.
     fn left_out(&self) -> Option<Advice> {
-        if self.expectation.allows("times") && self.found == Token::OpenBrace {
-            let here = Span::new(self.span().start, self.span().start);
-            return Some(said("write `repeat 3 times { .. }`").replacing(here, "times "));
+        if self.expectation.wants("times") && self.found == Token::OpenBrace {
+            return Some(said("write `repeat 3 times { .. }`").replacing(self.here(), "times "));
         }
         if self.found == Token::OpenBracket && self.expectation.is_only("=") {
-            let here = Span::new(self.span().start, self.span().start);
-            return Some(said("put `=` before it").replacing(here, "= "));
+            return Some(said("put `=` before it").replacing(self.here(), "= "));
         }
-        let is_wait = self.expectation.allows("for") && !self.expectation.allows_statement();
+        let is_wait = self.expectation.wants("for") && !self.expectation.allows_statement();
         if is_wait {
             return Some(said("say how long it waits at the most: `for up to 2 s`"));
         }
-        if self.expectation.allows("TEXT") && self.expectation.allows("in") {
+        if self.expectation.allows("TEXT") && self.expectation.wants("in") {
             return Some(said("say why: `allow W0001 \"..\"`, or `allow W0001 in file \"..\"`"));
         }
         if self.found == Token::Sequence && self.expectation.allows("{") {
@@ -175,22 +235,22 @@ impl Unexpected<'_> {
 
     /// In the clauses of a declaration.
     fn in_clause(&self) -> Option<Advice> {
-        let allows = |token| self.expectation.allows(token);
+        let wants = |token| self.expectation.wants(token);
         let text = shortened(self.text());
         let instead = match self.found {
-            Token::Fatal | Token::Recoverable | Token::Warning if allows("severity") => {
+            Token::Fatal | Token::Recoverable | Token::Warning if wants("severity") => {
                 format!("severity {text}")
             }
             Token::When | Token::Until | Token::While
-                if allows("if") && !self.expectation.allows_statement() =>
+                if wants("if") && !self.expectation.allows_statement() =>
             {
                 "if".to_owned()
             }
-            Token::Until if allows("succeeds") => "stop if".to_owned(),
-            Token::Name if allows("using") && text == "with" => "using".to_owned(),
-            Token::Name if allows("move") && self.before() == "advanced" => format!("move {text}"),
-            _ if allows("keyframe") && self.found.is_word() => format!("keyframe {text}"),
-            Token::Assign | Token::Colon if self.wants_word() => {
+            Token::Until if wants("succeeds") => "stop if".to_owned(),
+            Token::Name if wants("using") && text == "with" => "using".to_owned(),
+            Token::Name if wants("move") && self.before() == "advanced" => format!("move {text}"),
+            _ if wants("keyframe") && self.found.can_be_name() => format!("keyframe {text}"),
+            Token::Assign | Token::Colon if self.wants_word() && self.goes_on() => {
                 let help = format!("leave out the `{text}`");
                 return Some(said(help).replacing(self.span(), ""));
             }
@@ -207,31 +267,30 @@ impl Unexpected<'_> {
 
     /// In what a declaration consists of: parameters, numbers, how far a recovery goes.
     fn of_declaration(&self) -> Option<Advice> {
-        let allows = |token| self.expectation.allows(token);
+        let wants = |token| self.expectation.wants(token);
         let (text, before) = (shortened(self.text()), self.before());
         Some(match self.found {
-            Token::Name | Token::Assigned if allows(":") && TYPES.contains(&before) => {
+            Token::Name | Token::Assigned if wants(":") && TYPES.contains(&before) => {
                 let span = self.surroundings.before(self.span().start)?.span;
                 let turned = format!("{text}: {before}");
                 said(format!("write `{turned}`")).replacing(span.to(self.span()), &turned)
             }
-            Token::Comma | Token::CloseParenthesis if allows(":") => {
+            Token::Comma | Token::CloseParenthesis if wants(":") => {
                 said(format!("say its type: `{before}: length`"))
             }
-            Token::OpenParenthesis | Token::OpenBrace if allows("[") && !allows("=") => {
+            Token::OpenParenthesis | Token::OpenBrace if wants("[") && !wants("=") => {
                 said("the numbers stand in square brackets: `[1, 2, 3] mm`")
             }
             Token::OpenBracket if self.expectation.allows_value() => {
                 said("joint configurations are declared at the top: `joints NAME = [..] deg`")
             }
-            _ if allows("actions") && !self.found.is_word() => {
-                let here = Span::new(self.span().start, self.span().start);
-                said("say of what: `3 actions`").replacing(here, "actions ")
+            _ if wants("actions") && !self.found.is_word() => {
+                said("say of what: `3 actions`").replacing(self.here(), "actions ")
             }
-            Token::Name if allows("checkpoint") && allows("start") => {
+            Token::Name if wants("checkpoint") && wants("start") => {
                 self.instead(&format!("checkpoint {text}"))
             }
-            _ if allows("restart") => match text.as_str() {
+            _ if wants("restart") => match text.as_str() {
                 "retry" | "again" | "repeat" | "action" => self.instead("return to action"),
                 "resume" | "proceed" | "next" => self.instead("continue"),
                 "abort" | "halt" | "end" => self.instead("stop"),
@@ -243,9 +302,7 @@ impl Unexpected<'_> {
 
     /// Which clauses there are.
     fn clauses(&self) -> Option<Advice> {
-        let is_of_error = self.expectation.allows("severity") && !self.expectation.is_name();
-        let is_of_move = self.expectation.allows("succeeds") && !self.expectation.is_name();
-        match (is_of_error, is_of_move) {
+        match (self.expectation.wants("severity"), self.expectation.wants("succeeds")) {
             (true, _) => Some(said(
                 "the clauses of an error are severity, recover, otherwise, respond and then",
             )),
@@ -272,10 +329,7 @@ impl Unexpected<'_> {
 
     /// About the words of a move.
     fn way(&self) -> Option<Advice> {
-        let wants_direction = self.expectation.allows("forward")
-            && !self.expectation.is_name()
-            && !self.expectation.allows_value();
-        if !wants_direction {
+        if !self.expectation.wants("forward") {
             return None;
         }
         if self.found == Token::Plus {
@@ -294,11 +348,30 @@ impl Unexpected<'_> {
             let help = format!("the distance comes first: `move {turned}`");
             return Some(said(help).replacing(placed.span.to(self.span()), &turned));
         }
+        if name == "linearly" {
+            return Some(self.linearly_first(placed));
+        }
         if DIRECTIONS.contains(&name) {
             return Some(said(format!("say how far before the direction: `move 20 mm {name}`")));
         }
         let help = format!("to go to a position write `move to {}`", shortened(name));
         Some(said(help).replacing(placed.span, &format!("to {name}")))
+    }
+
+    /// `move linearly to start`
+    fn linearly_first(&self, linearly: Placed) -> Advice {
+        let help = said("the way comes last: `move to NAME linearly`");
+        let behind = self.surroundings.after(self.span().end);
+        let target = behind.filter(|target| target.token.can_be_name() && self.goes_on());
+        let Some(mut last) = target.filter(|_| self.found == Token::To) else { return help };
+        if let Some([dot, keyframe]) = self.surroundings.two_after(last.span.end)
+            && dot.token == Token::Dot
+        {
+            last = keyframe;
+        }
+        let turned = format!("{} linearly", self.surroundings.text(self.span().to(last.span)));
+        said(format!("the way comes last: `move {}`", shortened(&turned)))
+            .replacing(linearly.span.to(last.span), &turned)
     }
 
     /// What a declared name is used by, where it stands alone as a statement.

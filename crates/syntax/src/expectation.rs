@@ -24,6 +24,12 @@ impl<'e> Expectation<'e> {
         self.tokens.contains(token)
     }
 
+    /// Whether this word of the language is allowed as what it is: where a name or a value can
+    /// stand, every free word is allowed, and none is meant.
+    pub(crate) fn wants(&self, word: &str) -> bool {
+        self.allows(word) && !(FREE_WORDS.contains(&word) && self.allows("NAME"))
+    }
+
     /// Whether nothing but this token is allowed.
     pub(crate) fn is_only(&self, token: &str) -> bool {
         self.tokens.len() == 1 && self.allows(token)
@@ -32,7 +38,7 @@ impl<'e> Expectation<'e> {
     /// Whether a statement can begin here: in a block, and at the top in order to say that it
     /// cannot.
     pub(crate) fn allows_statement(&self) -> bool {
-        self.allows("cell")
+        self.wants("cell")
     }
 
     /// Whether an expression can begin here.

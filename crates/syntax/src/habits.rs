@@ -43,6 +43,8 @@ const fn opens(words: &'static [&'static str], help: &'static str) -> Row {
 
 const JOINT_MOVES: &[&str] = &["movej", "ptp", "sptp", "moveabsj", "moveto", "movejoint", "ptprel"];
 const LINEAR_MOVES: &[&str] = &["movel", "lin", "slin", "movelin", "linrel", "movep"];
+const OUTPUTS: &[&str] =
+    &["setdo", "setdigitalout", "setstandarddigitalout", "settooldigitalout", "reset"];
 const POSES: [&str; 7] = ["robtarget", "jointtarget", "e6pos", "e6axis", "frame", "pos", "pose"];
 const ENDS: &[&str] = &[
     "end",
@@ -67,15 +69,7 @@ const ROWS: &[Row] = &[
         "there are no circular moves: name points of the arc and write `move to NAME linearly`",
     ),
     line(
-        &[
-            "setdo",
-            "setdigitalout",
-            "setstandarddigitalout",
-            "settooldigitalout",
-            "setgo",
-            "reset",
-            "pulsedo",
-        ],
+        &["setgo", "pulsedo"],
         "name the output, `output gripper = 0`, and write `set gripper high` or `set gripper low`",
     ),
     line(
@@ -136,6 +130,11 @@ const ROWS: &[Row] = &[
         help: "write `throw`",
         then: Then::As(Token::Throw, None),
     },
+    Row {
+        words: &["parallel", "par", "concurrent", "concurrently", "simultaneously", "cobegin"],
+        help: "write `fork`, with `and` between its branches: `fork { .. } and { .. }`",
+        then: Then::As(Token::Fork, None),
+    },
     Row { words: &["let", "const"], help: "write `var`", then: Then::As(Token::Var, None) },
 ];
 
@@ -163,7 +162,13 @@ pub(crate) fn of(word: &str, rest: &str) -> Option<Habit> {
     if LINEAR_MOVES.contains(&plain.as_str()) {
         return Some(motion(rest, " linearly"));
     }
-    if plain == "wait" && word != "wait" && matches!(next, "SEC" | "FOR") {
+    if OUTPUTS.contains(&plain.as_str()) || plain == "set" && is_of_rapid(rest) {
+        return Some(output(&plain, rest));
+    }
+    if let Some(habit) = numbered(&plain, rest) {
+        return Some(habit);
+    }
+    if plain == "wait" && word != "wait" && matches!(next, "SEC" | "FOR" | "DI" | "RI") {
         let instead = if next == "SEC" { "0.5 s" } else { "until input 3 high for up to 2 s" };
         return Some(said(format!("write `wait {instead}`"), Then::NextLine));
     }
@@ -220,6 +225,73 @@ fn motion(rest: &str, how: &str) -> Habit {
     let instead = format!("move to {name}{how}");
     let help = format!("write `{instead}`; speed and tool are settings: `speed slow`, `tool NAME`");
     Habit { help, instead: Some(instead), then: Then::NextLine }
+}
+
+/// `SetDO grip, 1;`, `set_digital_out(0, True)`, `Set grip;`, `Reset grip;`
+fn output(plain: &str, rest: &str) -> Habit {
+    let mut words = rest
+        .split(|c: char| !c.is_ascii_alphanumeric() && c != '_')
+        .filter(|word| !word.is_empty() && *word != "SDelay");
+    let name = words.next();
+    let level = match plain {
+        "set" => Some("high"),
+        "reset" => Some("low"),
+        _ => words.next().and_then(level),
+    };
+    let (Some(name), Some(level)) = (name, level) else {
+        let help = "name the output, `output gripper = 0`, and write `set gripper high` or `set \
+                    gripper low`";
+        return said(help.to_owned(), Then::NextLine);
+    };
+    let instead = format!("set {name} {level}");
+    let help = format!("write `{instead}`; an output gets its name by `output gripper = 0`");
+    Habit { help, instead: Some(instead), then: Then::NextLine }
+}
+
+/// Whether what follows `Set` is one name and no level, as in RAPID.
+fn is_of_rapid(rest: &str) -> bool {
+    let name = first_word(rest);
+    let goes_on = rest.trim_start().get(name.len()..).unwrap_or("").trim();
+    !name.is_empty() && matches!(goes_on, "" | ";")
+}
+
+/// What a level is called elsewhere.
+fn level(word: &str) -> Option<&'static str> {
+    match word.to_lowercase().as_str() {
+        "1" | "true" | "on" | "high" => Some("high"),
+        "0" | "false" | "off" | "low" => Some("low"),
+        _ => None,
+    }
+}
+
+/// `DO[1]=ON`, `R[2]=R[2]+1`, `J P[1] 100% FINE`: signals, registers and positions by number.
+fn numbered(plain: &str, rest: &str) -> Option<Habit> {
+    let number = rest.strip_prefix('[').and_then(|rest| rest.split_once(']'));
+    let help = match (plain, number) {
+        ("do" | "ro", Some((number, rest))) => {
+            let number = first_word(number);
+            let value = rest.trim_start_matches([' ', '\t']).strip_prefix('=');
+            if let Some(level) = value.map(first_word).and_then(level) {
+                let instead = format!("set {number} {level}");
+                let help = format!("write `{instead}`");
+                return Some(Habit { help, instead: Some(instead), then: Then::NextLine });
+            }
+            format!("write `set {number} high` or `set {number} low`")
+        }
+        ("di" | "ri", Some((number, _))) => {
+            let number = first_word(number);
+            format!("an input is read by `input {number}`, as in `if input {number} {{ .. }}`")
+        }
+        ("r", Some(_)) => {
+            "declare a variable: `var count = 0`, then `count = count + 1`".to_owned()
+        }
+        ("j" | "l" | "c", None) if rest.trim_start().starts_with("P[") => {
+            let how = if plain == "j" { "" } else { " linearly" };
+            format!("declare the position, `joints NAME = [..] deg`, and write `move to NAME{how}`")
+        }
+        _ => return None,
+    };
+    Some(said(help, Then::NextLine))
 }
 
 /// A word of the language in capitals: of the block of another language, or just so.
@@ -289,6 +361,24 @@ mod tests {
         assert_eq!(instead("PTP", " {X 10}"), None);
         assert_eq!(instead("MoveL", " Offs(p10, 0, 0, 50)"), None);
         assert_eq!(instead("GOTO", " again"), None, "a jump goes to no place of the arm");
+    }
+
+    #[test]
+    fn an_output_is_written_out() {
+        let instead = |word, rest| of(word, rest).and_then(|habit| habit.instead);
+        assert_eq!(instead("SetDO", " grip, 1;").as_deref(), Some("set grip high"));
+        assert_eq!(instead("set_digital_out", "(0, False)").as_deref(), Some("set 0 low"));
+        assert_eq!(instead("Set", " grip;").as_deref(), Some("set grip high"));
+        assert_eq!(instead("Reset", " grip;").as_deref(), Some("set grip low"));
+        assert_eq!(instead("SetDO", ""), None);
+        assert_eq!(instead("Set", " grip high").as_deref(), Some("set"), "it is of this language");
+        assert_eq!(instead("DO", "[1]=ON").as_deref(), Some("set 1 high"));
+        assert_eq!(instead("RO", "[2] = OFF ;").as_deref(), Some("set 2 low"));
+        assert!(help("DO", "[1]=R[3]").is_some_and(|help| help.contains("`set 1 high`")));
+        assert!(help("DI", "[4]=ON").is_some_and(|help| help.contains("`input 4`")));
+        assert!(help("L", " P[1] 100mm/sec FINE").is_some_and(|help| help.contains("linearly")));
+        assert!(help("R", "[1]=R[1]+1").is_some_and(|help| help.contains("var count")));
+        assert_eq!(help("r", " = 3"), None);
     }
 
     #[test]

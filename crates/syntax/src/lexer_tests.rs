@@ -11,7 +11,8 @@ fn lex(source: &str) -> (Vec<(Token, &str)>, Vec<Code>) {
         // One that is not written helps the parser to go on.
         .filter(|(token, text)| *token != Semicolon || *text == ";")
         .collect();
-    let codes = sink.into_parts().0.into_iter().map(|diagnostic| diagnostic.code).collect();
+    let found = sink.into_findings().diagnostics;
+    let codes = found.into_iter().map(|diagnostic| diagnostic.code).collect();
     (tokens, codes)
 }
 

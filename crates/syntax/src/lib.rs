@@ -15,6 +15,7 @@ pub mod format;
 mod habits;
 mod imports;
 pub mod index;
+mod left_out;
 mod lexer;
 mod nearest;
 mod nesting;
@@ -28,6 +29,7 @@ mod token;
 mod tree;
 
 pub use imports::imports;
+pub use left_out::LeftOut;
 pub use nearest::nearest;
 pub use token::{FREE_WORDS, RESERVED_WORDS, UNITS};
 
@@ -68,6 +70,8 @@ pub struct Parsed<'s> {
     pub program: ast::Program<'s>,
     /// What is wrong with the text, by place.
     pub diagnostics: Vec<Diagnostic>,
+    /// What the tree lacks; none if there are no diagnostics.
+    pub left_out: Option<LeftOut>,
 }
 
 /// The tree of a source text, and what is wrong with it. Never fails and never panics; at most
@@ -89,17 +93,23 @@ pub fn parse_file(sources: &Sources, file: usize) -> Parsed<'_> {
 /// The tree of what stands from an offset to the end of the source.
 fn parse_from(source: &str, start: usize) -> Parsed<'_> {
     if let Some(diagnostic) = refuse(source, start) {
-        return Parsed { diagnostics: vec![diagnostic], ..Parsed::default() };
+        let left_out = Some(LeftOut::endless());
+        return Parsed { diagnostics: vec![diagnostic], left_out, ..Parsed::default() };
     }
     let sink = sink::Sink::default();
     let lexer = lexer::Lexer::new(source, start, &sink);
     let result = grammar::ProgramParser::new().parse(source, &sink, lexer);
-    let program = result.map_err(|error| sink.unexpected(error, source.len() as u32));
-    let (diagnostics, syntax_errors, misplaced) = sink.into_parts();
+    let program = result.map_err(|error| sink.unexpected(error, source.len() as u32)).ok();
+    let found = sink.into_findings();
+    let is_cut = found.is_cut || program.is_none();
     let mut program = program.unwrap_or_default();
-    program.items.extend(misplaced);
-    let diagnostics = parse_error::explain(source, start, diagnostics, &syntax_errors);
-    Parsed { program, diagnostics }
+    program.items.extend(found.misplaced);
+    let diagnostics = parse_error::explain(source, start, found.diagnostics, &found.syntax_errors);
+    let left_out = (!diagnostics.is_empty()).then(|| match is_cut {
+        true => LeftOut::endless(),
+        false => LeftOut::of(source, start, &program, &diagnostics, &found.given_up),
+    });
+    Parsed { program, diagnostics, left_out }
 }
 
 /// A file's bytes as text.

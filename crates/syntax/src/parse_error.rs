@@ -118,6 +118,8 @@ fn say_once(source: &str, diagnostics: &mut Vec<Diagnostic>) {
         let is_again = is_slip && is_same_line && again.message == first.message;
         if is_again {
             first.primary.text = format!("{}, here and on", again.primary.text);
+            // One change does not mend them all.
+            first.suggestion = None;
         }
         is_again
     });
@@ -231,6 +233,8 @@ impl Mistake<'_> {
         let diagnostic = Diagnostic::error(Code::UnexpectedToken, span, message, "unexpected");
         let instead = match word {
             "steps" | "moves" | "statements" => Some("actions"),
+            "off" if self.expectation.wants("high") => Some("low"),
+            "on" if self.expectation.wants("high") => Some("high"),
             _ => nearest(word, self.expectation.words().chain(FREE_WORDS.iter().copied())),
         };
         Some(match instead {
@@ -266,30 +270,36 @@ impl Mistake<'_> {
 
     /// `i++`, `x *= 2`.
     fn foreign_assignment(&self, found: Token) -> Option<Diagnostic> {
-        if found != Token::Name || !self.expectation.allows_statement() {
+        if !found.can_be_name() || !self.expectation.allows_statement() {
             return None;
         }
         let name = shortened(self.surroundings.text(self.error.span));
         let [first, second] = self.surroundings.two_after(self.error.span.end)?;
         let is_one_sign = first.span.end == second.span.start;
-        let instead = match (first.token, second.token) {
-            (Token::Plus, Token::Plus) => format!("{name} += 1"),
-            (Token::Minus, Token::Minus) => format!("{name} -= 1"),
-            (Token::Star, Token::Assign) => format!("{name} = {name} * .."),
-            (Token::Slash, Token::Assign) => format!("{name} = {name} / .."),
+        let step = |sign| (format!("{name} {sign} 1"), Some(format!(" {sign} 1")));
+        let (instead, change) = match (first.token, second.token) {
+            (Token::Plus, Token::Plus) => step("+="),
+            (Token::Minus, Token::Minus) => step("-="),
+            // In place of the sign alone it would take the first factor of what follows.
+            (Token::Star, Token::Assign) => (format!("{name} = {name} * .."), None),
+            (Token::Slash, Token::Assign) => (format!("{name} = {name} / .."), None),
             _ => return None,
         };
         let span = first.span.to(second.span);
         let sign = self.surroundings.text(span);
         let message = format!("`{sign}` is not an assignment here");
         let diagnostic = Diagnostic::error(Code::ForeignOperator, span, message, "unknown");
-        is_one_sign.then(|| diagnostic.with_help(format!("write `{instead}`")))
+        let diagnostic = diagnostic.with_help(format!("write `{instead}`"));
+        is_one_sign.then(|| match change {
+            Some(text) => diagnostic.replacing(span, text),
+            None => diagnostic,
+        })
     }
 
     /// `requires x = 3`; but an assignment on a line of its own is the next statement.
     fn comparison_as_assignment(&self, found: Token) -> Option<Diagnostic> {
         let is_operand = found == Token::Assigned
-            && self.expectation.allows_value()
+            && self.expectation.allows("not")
             && !self.surroundings.begins_line(self.error.span.start);
         let sign = self.surroundings.after(self.error.span.end).filter(|_| is_operand)?;
         Some(tree::assigns(sign.span))

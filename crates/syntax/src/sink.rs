@@ -4,6 +4,7 @@
 use crate::ast::Item;
 use crate::codes::Code;
 use crate::diagnostic::Diagnostic;
+use crate::left_out::GivenUp;
 use crate::span::Span;
 use crate::token::Token;
 use lalrpop_util::{ErrorRecovery, ParseError};
@@ -46,6 +47,10 @@ pub(crate) struct Sink<'s> {
     diagnostics: RefCell<Vec<Diagnostic>>,
     syntax_errors: RefCell<Vec<SyntaxError>>,
     misplaced: RefCell<Vec<Item<'s>>>,
+    given_up: RefCell<Vec<Span>>,
+    /// The end of what has been read whole last.
+    settled: Cell<u32>,
+    has_ended_early: Cell<bool>,
     count: Cell<usize>,
     recoveries: Cell<usize>,
     idle_tokens: Cell<u32>,
@@ -60,6 +65,21 @@ pub(crate) struct Sink<'s> {
     furthest: Cell<u32>,
     block: Cell<BlockKind>,
     is_outside: Cell<bool>,
+}
+
+/// All that was found.
+#[derive(Debug)]
+pub(crate) struct Findings<'s> {
+    /// What has been worded.
+    pub(crate) diagnostics: Vec<Diagnostic>,
+    /// What has not.
+    pub(crate) syntax_errors: Vec<SyntaxError>,
+    /// Declarations that stand in a block.
+    pub(crate) misplaced: Vec<Item<'s>>,
+    /// What the parser left out in order to go on.
+    pub(crate) given_up: GivenUp,
+    /// Whether the text seems to lack its end. A block with a declaration in it lacks its brace.
+    pub(crate) is_cut: bool,
 }
 
 /// What is known of the block that is being read.
@@ -90,6 +110,7 @@ impl<'s> Sink<'s> {
         if self.aftermath.get().is_none() {
             self.report(diagnostic);
         }
+        self.has_ended_early.set(true);
         self.unsettle(end);
     }
 
@@ -108,6 +129,9 @@ impl<'s> Sink<'s> {
     /// `end`, after which comes `rest`.
     pub(crate) fn recovered(&self, recovery: Recovery, end: u32, rest: &str) {
         self.recoveries.set(self.recoveries.get() + 1);
+        // What had been read of it is given up as well.
+        let start = self.settled.get().min(end);
+        self.given_up.borrow_mut().push(Span::new(start, end));
         self.unexpected(recovery.error, end);
         if begins_anew(rest) {
             self.aftermath.set(None);
@@ -158,6 +182,7 @@ impl<'s> Sink<'s> {
     /// Something whole that ends at this place has been read.
     pub(crate) fn settle(&self, end: u32) {
         self.built();
+        self.settled.set(end);
         if self.aftermath.get().is_some_and(|mistake| end > mistake) {
             self.aftermath.set(None);
         }
@@ -227,13 +252,19 @@ impl<'s> Sink<'s> {
         self.count.get() >= MAX_MISTAKES || self.recoveries.get() >= MAX_RECOVERIES
     }
 
-    /// All that was found: what has been worded, what has not, and misplaced declarations.
-    pub(crate) fn into_parts(self) -> (Vec<Diagnostic>, Vec<SyntaxError>, Vec<Item<'s>>) {
-        (
-            self.diagnostics.into_inner(),
-            self.syntax_errors.into_inner(),
-            self.misplaced.into_inner(),
-        )
+    /// All that was found.
+    pub(crate) fn into_findings(self) -> Findings<'s> {
+        let is_unclosed = self.has_ended_early.get();
+        let misplaced = self.misplaced.into_inner();
+        let syntax_errors = self.syntax_errors.into_inner();
+        let is_at_end = |error: &SyntaxError| error.found.is_none();
+        Findings {
+            diagnostics: self.diagnostics.into_inner(),
+            is_cut: is_unclosed && misplaced.is_empty() || syntax_errors.iter().any(is_at_end),
+            given_up: GivenUp { spans: self.given_up.into_inner(), is_unclosed },
+            syntax_errors,
+            misplaced,
+        }
     }
 
     fn unsettle(&self, end: u32) {

@@ -87,6 +87,16 @@ impl<'s> Surroundings<'s> {
         open.last().copied()
     }
 
+    /// The bracket that the one at this place closes.
+    pub(crate) fn opening_of(&self, closing: Span) -> Option<Placed> {
+        let mut open = Vec::new();
+        let mut closed = None;
+        for token in self.until(closing.start + 1) {
+            closed = follow(&mut open, *token).filter(|_| token.span == closing);
+        }
+        closed
+    }
+
     /// The bracket that probably lacks its closing one, if the text ends with brackets open. It is
     /// the one whose closing bracket begins a line that is indented otherwise than its own, since
     /// that one was meant for another; or else the innermost.

@@ -133,6 +133,11 @@ impl Token {
         matches!(self, Self::Name | Self::Assigned) || self.is_reserved() || self.is_free()
     }
 
+    /// Whether it can be a name: one, or a word of the language that is not reserved.
+    pub(crate) fn can_be_name(self) -> bool {
+        self.is_word() && !self.is_reserved()
+    }
+
     /// Whether it begins a statement, whatever stands before it.
     pub(crate) fn begins_statement(self) -> bool {
         use Token::*;
@@ -213,11 +218,13 @@ impl Token {
     }
 
     /// Whether what follows on the line is an operand: the `x` of `if x = 3` is none that is
-    /// assigned. The token before tells whether a word such as `when` is a name.
+    /// assigned, nor the `lamp` of `set lamp = high`. The token before tells whether a word such as
+    /// `when` is a name.
     pub(crate) fn wants_operand(self, before: Self) -> bool {
         use Token::*;
         match self {
-            Assign | AddAssign | SubtractAssign | If | While | Wait | Sleep | Input => true,
+            Assign | AddAssign | SubtractAssign | If | While | Wait | Sleep | Input | Set
+            | Toggle => true,
             When => matches!(before, Ending | Entered),
             _ => self.is_operator(),
         }

@@ -123,6 +123,8 @@ pub(crate) fn unknown_unit(word: &str, span: Span, others: &[&str]) -> Diagnosti
     let row = UNIT_WORDS.iter().find(|(words, _)| words.contains(&small.as_str()));
     match (row, nearest(word, UNITS.iter().chain(others).copied())) {
         (Some((_, unit)), _) => diagnostic.write_instead(span, unit),
+        // `Nm`, of which none is near by its letters alone.
+        (None, _) if word.starts_with('N') => diagnostic.did_you_mean(span, "N"),
         (None, Some(meant)) => diagnostic.did_you_mean(span, meant),
         (None, None) => diagnostic,
     }

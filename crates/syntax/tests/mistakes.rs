@@ -224,7 +224,7 @@ fn independent_mistakes_are_all_reported() {
     let marked: Vec<&str> = mistakes(source).into_iter().map(|(_, text)| text).collect();
     let expected = [
         "[", "[", "mmm", "sevrity", "onze", "actons", "sideways", "retrun", "}", "3", "quick", "3",
-        "high", "if", "{", "kg", "item", "to",
+        "high", "to", "{", "kg", "item", "to",
     ];
     assert_eq!(marked, expected);
 }

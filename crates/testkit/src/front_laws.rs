@@ -4,6 +4,7 @@
 use crate::programs::{self, Options};
 use arbitrary::{Result, Unstructured};
 use obverse_compiler::compile;
+use obverse_syntax::codes::Code;
 use obverse_syntax::diagnostic::Severity;
 
 /// In how many places each program is cut.
@@ -39,6 +40,9 @@ pub fn cut_off_anywhere(u: &mut Unstructured<'_>) -> Result<bool> {
         assert_eq!(compiled.module.is_none(), has_error, "an error, or a module:\n{cut}");
         let depth = cut.matches('{').count() - cut.matches('}').count();
         assert!(depth == 0 || has_error, "a block is open:\n{cut}");
+        // What is cut off may declare it.
+        let unknown = compiled.diagnostics.iter().find(|one| one.code == Code::UnknownName);
+        assert!(depth == 0 || unknown.is_none(), "{unknown:?}\n{cut}");
         is_wrong |= has_error;
     }
     Ok(is_wrong)

@@ -1,10 +1,11 @@
 //! The first pass: tables, functions, and where labels are. Leaves for the second pass every line
 //! that names something.
 
-use super::error::{AsmError, Errors, none_of, shown, unknown};
+use super::error::{AsmError, Errors, Wrong, none_of, shown, unknown};
 use super::mention;
 use super::quote::{is_bare, unquote};
 use super::scan::{Scanner, Token};
+use crate::code::ModuleCode;
 use crate::fault::Bounds;
 use crate::module::{
     Constant, Continuation, ErrorDeclaration, Function, FunctionKind, Item, Module, Otherwise,
@@ -136,16 +137,22 @@ fn header<'t>(lines: &mut impl Iterator<Item = Scanner<'t>>) -> Result<(), AsmEr
     for mut line in lines {
         let Some(token) = line.token()? else { continue };
         if token.value != Token::Word("obvasm") {
-            return Err(line.error(token.at, EXPECTED));
+            return Err(line.error(token.at, other(EXPECTED)));
         }
         let version = line.word("version")?;
         if version.value != "1" {
             let found = shown(version.value);
-            return Err(line.error(version.at, format!("there is version 1, and this is {found}")));
+            let message = format!("there is version 1, and this is {found}");
+            return Err(line.error(version.at, other(&message)));
         }
         return line.end();
     }
-    Err(Scanner::new(1, "").error(0, EXPECTED))
+    Err(Scanner::new(1, "").error(0, other(EXPECTED)))
+}
+
+/// That it is no assembly text of this version.
+fn other(message: &str) -> Wrong {
+    Wrong::new(ModuleCode::Header, message)
 }
 
 impl<'t> Reader<'t> {
@@ -176,26 +183,29 @@ impl<'t> Reader<'t> {
         Ok(())
     }
 
-    fn label(&mut self, name: &'t str) -> Result<(), String> {
+    fn label(&mut self, name: &'t str) -> Result<(), Wrong> {
         if !is_bare(name) {
-            return Err(format!("{} is no label; a label is a word", shown(name)));
+            return Err(format!("{} is no label; a label is a word", shown(name)).into());
         }
         let section = self.section()?;
         match self.declared.labels.insert((section, name), self.here) {
             None => Ok(()),
-            Some(_) => Err(format!("label {} is there twice in this function", shown(name))),
+            Some(_) => {
+                let message = format!("label {} is there twice in this function", shown(name));
+                Err(Wrong::new(ModuleCode::Ambiguous, message))
+            }
         }
     }
 
     /// The present stretch of code.
-    fn section(&mut self) -> Result<usize, String> {
+    fn section(&mut self) -> Result<usize, Wrong> {
         let sections = &mut self.declared.sections;
         if let Some(last) = sections.len().checked_sub(1) {
             return Ok(last);
         }
         // Once is enough.
         sections.push(None);
-        Err("code belongs to a function; begin one with `.function \"main\" start`".to_owned())
+        Err("code belongs to a function; begin one with `.function \"main\" start`".into())
     }
 
     fn instruction(&mut self, mnemonic: &str, line: &mut Scanner<'t>) -> Result<(), Problem> {
@@ -478,7 +488,7 @@ fn variable(variables: &mut Vec<Variable>, line: &mut Scanner) -> Result<(), Asm
 /// What is wrong with a line: there, or with its first word.
 enum Problem {
     Line(AsmError),
-    Word(String),
+    Word(Wrong),
 }
 
 impl From<AsmError> for Problem {
@@ -487,14 +497,20 @@ impl From<AsmError> for Problem {
     }
 }
 
+impl From<Wrong> for Problem {
+    fn from(wrong: Wrong) -> Self {
+        Self::Word(wrong)
+    }
+}
+
 impl From<String> for Problem {
     fn from(message: String) -> Self {
-        Self::Word(message)
+        Self::Word(message.into())
     }
 }
 
 impl From<&str> for Problem {
     fn from(message: &str) -> Self {
-        Self::Word(message.to_owned())
+        Self::Word(message.into())
     }
 }

@@ -2,6 +2,7 @@
 
 use super::nearest::nearest;
 use super::quote::excerpt;
+use crate::code::ModuleCode;
 use std::fmt;
 
 /// The most errors that are reported of one text.
@@ -16,6 +17,39 @@ pub struct AsmError {
     pub column: usize,
     /// What is wrong, and what to do.
     pub message: String,
+    /// Its kind.
+    pub code: ModuleCode,
+}
+
+/// What is wrong, before it has a place.
+#[derive(Clone, Debug)]
+pub(super) struct Wrong {
+    pub(super) code: ModuleCode,
+    pub(super) message: String,
+}
+
+impl Wrong {
+    pub(super) fn new(code: ModuleCode, message: impl Into<String>) -> Self {
+        Self { code, message: message.into() }
+    }
+
+    /// With more to say.
+    pub(super) fn and(mut self, more: &str) -> Self {
+        self.message += more;
+        self
+    }
+}
+
+impl From<String> for Wrong {
+    fn from(message: String) -> Self {
+        Self::new(ModuleCode::Form, message)
+    }
+}
+
+impl From<&str> for Wrong {
+    fn from(message: &str) -> Self {
+        Self::new(ModuleCode::Form, message)
+    }
 }
 
 impl fmt::Display for AsmError {
@@ -63,11 +97,12 @@ pub(super) fn unknown<'c>(
     what: &str,
     word: &str,
     candidates: impl IntoIterator<Item = &'c str>,
-) -> String {
+) -> Wrong {
     let nearest = nearest(word, candidates)
         .map(|name| format!("; the nearest is {}", shown(name)))
         .unwrap_or_default();
-    format!("there is no {what} {}{nearest}", shown(word))
+    let message = format!("there is no {what} {}{nearest}", shown(word));
+    Wrong::new(ModuleCode::UnknownWord, message)
 }
 
 /// That a word is none of a few, and which these are.
@@ -75,7 +110,8 @@ pub(super) fn none_of<'c>(
     what: &str,
     word: &str,
     choices: impl IntoIterator<Item = &'c str>,
-) -> String {
+) -> Wrong {
     let choices = choices.into_iter().collect::<Vec<_>>().join(", ");
-    format!("{} is no {what}; there are {choices}", shown(word))
+    let message = format!("{} is no {what}; there are {choices}", shown(word));
+    Wrong::new(ModuleCode::UnknownWord, message)
 }

@@ -2,12 +2,14 @@
 //! code says and no table has, counts prefixes, and finds the jumps of joins that name none.
 
 use super::declare::{Declared, Use, What};
-use super::error::{AsmError, Errors, none_of, shown, unknown};
+use super::error::{AsmError, Errors, Wrong, none_of, shown, unknown};
 use super::listing::counted_prefix;
 use super::names::{Found, Names, Scope, is_named};
+use super::quote::excerpt;
 use super::scan::{Placed, Scanner, Token};
 use super::words::{choice_number, choices, parse_constant};
 use crate::builder::{with_label, with_prefix};
+use crate::code::ModuleCode;
 use crate::module::{
     Constant, Depth, Extent, Keyframe, Module, Otherwise, Perturbation, Recovery, Reversal,
 };
@@ -175,7 +177,7 @@ impl<'t> Resolver<'_, 't, '_> {
         let instr = instr.map_err(|refused| match refused {
             Refused::Text(error) => error,
             Refused::Range(OperandError { value, .. }) => {
-                place.error_here(format!("{value} does not fit into this operand"))
+                place.error_here(no_fit(&value.to_string()))
             }
         })?;
         Ok(with_prefix(instr, given.map_or(counted, Prefix)))
@@ -197,68 +199,68 @@ impl<'t> Resolver<'_, 't, '_> {
         let number = match token.value {
             Token::Text(text) if is_named(kind) => self.name(kind, &text),
             Token::Word(word) => self.word(kind, word),
-            _ => Err(format!("{token} is no {}", kind_name(kind))),
+            _ => Err(format!("{token} is no {}", kind_name(kind)).into()),
         };
         number.map_err(|message| line.error(at, message))
     }
 
-    fn word(&mut self, kind: OperandKind, word: &str) -> Result<i64, String> {
+    fn word(&mut self, kind: OperandKind, word: &str) -> Result<i64, Wrong> {
         let no_number = || format!("{} is no {}", shown(word), kind_name(kind));
         if choices(kind).next().is_some() {
             return choice_number(kind, word)
                 .ok_or_else(|| none_of(kind_name(kind), word, choices(kind)));
         }
         if matches!(kind, OperandKind::Integer | OperandKind::Counter | OperandKind::Bit) {
-            return word.parse().map_err(|_| format!("{}: it is a number", no_number()));
+            return word.parse().map_err(|_| match is_whole(word) {
+                true => no_fit(word),
+                false => not_a(format!("{}: it is a number", no_number())),
+            });
         }
         if let Some((name, index)) = word.split_once('#') {
-            let at = index.parse::<u32>().map_err(|_| no_number())?;
+            let at = index.parse::<u32>().map_err(|_| not_a(no_number()))?;
             let is_name = name.is_empty() || self.scope.name(kind, at as usize) == Some(name);
-            return is_name
-                .then_some(i64::from(at))
-                .ok_or_else(|| format!("{} {at} is not called {}", kind_name(kind), shown(name)));
+            return is_name.then_some(i64::from(at)).ok_or_else(|| {
+                let found = format!("{} {at} is not called {}", kind_name(kind), shown(name));
+                Wrong::new(ModuleCode::UnknownWord, found)
+            });
         }
         match kind {
             OperandKind::Label => self.label(word),
             OperandKind::Constant => {
                 let constant = parse_constant(word)
-                    .ok_or_else(|| format!("{}: it is a number or `#index`", no_number()))?;
+                    .ok_or_else(|| not_a(format!("{}: it is a number or `#index`", no_number())))?;
                 self.constant(constant)
             }
-            OperandKind::Reason => Err(format!("{}: it stands in quotes", no_number())),
+            OperandKind::Reason => Err(format!("{}: it stands in quotes", no_number()).into()),
             _ => self.name(kind, word),
         }
     }
 
-    fn label(&self, word: &str) -> Result<i64, String> {
+    fn label(&self, word: &str) -> Result<i64, Wrong> {
         let Some(section) = self.section else { return Err(unknown("label", word, [])) };
         let mut here =
             self.labels.range((section, "")..(section + 1, "")).map(|((_, name), _)| *name);
         match self.labels.get(&(section, word)) {
             Some(at) => Ok(i64::from(*at)),
-            None => Err(unknown("label", word, &mut here) + "; labels are of their function"),
+            None => Err(unknown("label", word, &mut here).and("; labels are of their function")),
         }
     }
 
-    fn name(&mut self, kind: OperandKind, name: &str) -> Result<i64, String> {
+    fn name(&mut self, kind: OperandKind, name: &str) -> Result<i64, Wrong> {
         match self.scope.find(kind, name) {
             Some(Found::One(at)) => number(at),
-            Some(Found::Several) => Err(format!(
-                "there is more than one {} {}; write `#` and the index of the one that is meant",
-                kind_name(kind),
-                shown(name)
-            )),
+            Some(Found::Several) => {
+                Err(several(&format!("there is more than one {} {}", kind_name(kind), shown(name))))
+            }
             None if kind == OperandKind::Reason => self.reason(name),
             None => Err(unknown(kind_name(kind), name, self.scope.all(kind))),
         }
     }
 
-    fn constant(&mut self, constant: Constant) -> Result<i64, String> {
+    fn constant(&mut self, constant: Constant) -> Result<i64, Wrong> {
         match self.scope.names.constant(constant) {
             Some(Found::One(at)) => number(at),
-            Some(Found::Several) => Err("this constant is there twice; write `#` and the index \
-                                         of the one that is meant"
-                .to_owned()),
+            Some(Found::Several) => Err(several("this constant is there twice")),
             None => {
                 let added = &mut self.resolved.constants;
                 let key = (matches!(constant, Constant::Real(_)), constant.bits());
@@ -272,7 +274,7 @@ impl<'t> Resolver<'_, 't, '_> {
         }
     }
 
-    fn reason(&mut self, text: &str) -> Result<i64, String> {
+    fn reason(&mut self, text: &str) -> Result<i64, Wrong> {
         if let Some(at) = self.added.reasons.get(text) {
             return number(*at);
         }
@@ -290,11 +292,12 @@ impl<'t> Resolver<'_, 't, '_> {
         let number = match value {
             Token::Word(word) => self.word(kind, word),
             Token::Text(text) => self.name(kind, &text),
-            Token::Comma | Token::Colon => Err(format!("this is no {}", kind_name(kind))),
+            Token::Comma | Token::Colon => Err(format!("this is no {}", kind_name(kind)).into()),
         };
         let number = number.map_err(|message| line.error(at, message))?;
-        u16::try_from(number)
-            .map_err(|_| line.error(at, format!("{number} is no index: there are at most 65536")))
+        u16::try_from(number).map_err(|_| {
+            line.error(at, not_a(format!("{number} is no index: there are at most 65536")))
+        })
     }
 
     fn recovery(&mut self, line: &mut Scanner<'t>) -> Result<Recovery, AsmError> {
@@ -381,8 +384,27 @@ impl<'t> Resolver<'_, 't, '_> {
     }
 }
 
-fn number(at: usize) -> Result<i64, String> {
-    i64::try_from(at).map_err(|error| error.to_string())
+fn number(at: usize) -> Result<i64, Wrong> {
+    i64::try_from(at).map_err(|error| not_a(error.to_string()))
+}
+
+/// Whether a word is a whole number, of whatever size.
+fn is_whole(word: &str) -> bool {
+    let digits = word.strip_prefix(['-', '+']).unwrap_or(word);
+    !digits.is_empty() && digits.bytes().all(|byte| byte.is_ascii_digit())
+}
+
+fn no_fit(number: &str) -> Wrong {
+    not_a(format!("{} does not fit into this operand", excerpt(number)))
+}
+
+fn not_a(message: String) -> Wrong {
+    Wrong::new(ModuleCode::Number, message)
+}
+
+fn several(found: &str) -> Wrong {
+    let message = format!("{found}; write `#` and the index of the one that is meant");
+    Wrong::new(ModuleCode::Ambiguous, message)
 }
 
 fn is_at_end(line: &Scanner) -> bool {

@@ -1,9 +1,10 @@
 //! One line of assembly text, token by token, with the place of what is wrong. Knows nothing of
 //! what lines mean.
 
-use super::error::{AsmError, none_of, shown};
+use super::error::{AsmError, Wrong, none_of, shown};
 use super::quote::{is_bare, unquote};
 use super::words::{Word, parse_real};
+use crate::code::ModuleCode;
 use std::str::FromStr;
 
 /// A piece of a line.
@@ -44,15 +45,16 @@ impl<'t> Scanner<'t> {
     }
 
     /// An error at a byte of this line.
-    pub(super) fn error(&self, at: usize, message: impl Into<String>) -> AsmError {
+    pub(super) fn error(&self, at: usize, wrong: impl Into<Wrong>) -> AsmError {
         let column = self.line.get(..at).map_or(0, |before| before.chars().count()) + 1;
-        AsmError { line: self.number, column, message: message.into() }
+        let Wrong { code, message } = wrong.into();
+        AsmError { line: self.number, column, message, code }
     }
 
     /// An error where the scanner is.
-    pub(super) fn error_here(&mut self, message: impl Into<String>) -> AsmError {
+    pub(super) fn error_here(&mut self, wrong: impl Into<Wrong>) -> AsmError {
         self.skip_spaces();
-        self.error(self.at, message)
+        self.error(self.at, wrong)
     }
 
     fn skip_spaces(&mut self) {
@@ -141,7 +143,8 @@ impl<'t> Scanner<'t> {
         let word = self.word(what)?;
         word.value.parse().map_err(|_| {
             let (value, least, most) = (shown(word.value), T::LEAST, T::MOST);
-            self.error(word.at, format!("{value} is no {what}: a number from {least} to {most}"))
+            let message = format!("{value} is no {what}: a number from {least} to {most}");
+            self.error(word.at, Wrong::new(ModuleCode::Number, message))
         })
     }
 
@@ -153,7 +156,7 @@ impl<'t> Scanner<'t> {
                 "{} is no {what}: a decimal number, or 0x and the bits of one",
                 shown(word.value)
             );
-            self.error(word.at, message)
+            self.error(word.at, Wrong::new(ModuleCode::Number, message))
         })
     }
 

@@ -39,6 +39,7 @@ mod flow;
 mod nesting;
 mod tables;
 
+use crate::code::ModuleCode;
 use crate::module::Module;
 use std::fmt;
 
@@ -87,6 +88,25 @@ pub enum Rule {
     SourceMap,
     /// Rule 10.
     Tasks,
+}
+
+impl Rule {
+    /// The code of what breaks it.
+    #[must_use]
+    pub fn code(self) -> ModuleCode {
+        match self {
+            Self::Tables => ModuleCode::Tables,
+            Self::Functions => ModuleCode::Functions,
+            Self::Operands => ModuleCode::Operands,
+            Self::Statements => ModuleCode::Statements,
+            Self::Joins => ModuleCode::Joins,
+            Self::Loops => ModuleCode::Loops,
+            Self::Updates => ModuleCode::Updates,
+            Self::Blocks => ModuleCode::Blocks,
+            Self::SourceMap => ModuleCode::SourceMap,
+            Self::Tasks => ModuleCode::Tasks,
+        }
+    }
 }
 
 /// Why a module is refused.

@@ -1,7 +1,7 @@
 //! What the assembler says of texts that are wrong: where, what, and what to do.
 
-use obverse_bytecode::assemble;
 use obverse_bytecode::text::MAX_ERRORS;
+use obverse_bytecode::{ModuleCode, assemble, verify};
 
 /// Above every text that is not about its beginning.
 const HEAD: &str = "\
@@ -54,7 +54,7 @@ fn instructions() {
 fn numbers() {
     says("push.int 2147483648", "10: 2147483648 does not fit into this operand");
     says("push.int three", "10: `three` is no number: it is a number");
-    says("push.int 9223372036854775808", "10: `9223372036854775808` is no number: it is a number");
+    says("push.int 9223372036854775808", "10: 9223372036854775808 does not fit into this operand");
     says("push.counter 256", "14: 256 does not fit into this operand");
     says("push.counter -1", "14: -1 does not fit into this operand");
     says("sense.input count, low", "20: `low` is no line: it is a number");
@@ -291,4 +291,23 @@ fn a_long_word_is_not_repeated() {
     let errors = assemble(&format!("{HEAD}{word}\npush.local {word}\n{word}:\n")).unwrap_err();
     assert_eq!(errors.len(), 3);
     assert!(errors.iter().all(|error| error.message.len() < 300));
+}
+
+/// The codes of what is wrong with a text, by the assembler or else by the verifier.
+fn codes(text: &str) -> Vec<ModuleCode> {
+    match assemble(text).map(verify) {
+        Err(errors) => errors.iter().map(|error| error.code).collect(),
+        Ok(Err(errors)) => errors.iter().map(|error| error.rule.code()).collect(),
+        Ok(Ok(_)) => Vec::new(),
+    }
+}
+
+#[test]
+fn the_examples_of_the_pages_are_what_they_say() {
+    // Bytes that are no module cannot be shown as text.
+    for code in ModuleCode::ALL.iter().filter(|code| **code != ModuleCode::Bytes) {
+        assert_eq!(codes(code.right_example()).first(), None, "{}", code.as_str());
+        assert_eq!(codes(code.wrong_example()).first(), Some(code), "{}", code.as_str());
+    }
+    assert!(ModuleCode::ALL.iter().map(|code| code.as_str()).is_sorted_by(|a, b| a < b));
 }

@@ -52,6 +52,8 @@ impl<'s> Checker<'s> {
     /// A parameter of a type that has no values could never be given one.
     fn check_passable(&mut self, type_name: Name<'s>, of_type: ValueType) {
         let missing = match of_type {
+            // It may be among what the parser has left out.
+            _ if !self.reports.is_whole() => return,
             ValueType::Item if self.module.items.is_empty() => "item",
             ValueType::Joints if self.module.joints.is_empty() => "joint configuration",
             _ => return,

@@ -210,7 +210,33 @@ impl<'s> Checker<'s> {
                 diagnostic = diagnostic.with_note(format!("there {verb} {}", there.join(", ")));
             }
         }
-        self.reports.add(diagnostic);
+        self.reports.add_unknown(name.value, diagnostic);
+    }
+
+    /// An assignment to a name that nothing has: a variable that was not declared, or a setting.
+    fn report_undeclared(&mut self, name: Name<'s>) {
+        let message = format!("there is no `{}`; a variable is needed here", name.value);
+        let diagnostic =
+            Diagnostic::error(Code::UnknownName, name.span, message, "declared nowhere");
+        let meant = self.reports.meant(name.value, self.names.candidates(is_variable));
+        let diagnostic = match (name.value, meant) {
+            ("speed", _) => diagnostic.with_help("a speed is set without `=`: `speed slow`"),
+            ("tool", _) => diagnostic.with_help("a tool is set without `=`: `tool NAME`"),
+            (_, Some(meant)) => {
+                self.names.mark_used(meant);
+                diagnostic.did_you_mean(name.span, meant)
+            }
+            (_, None) => {
+                let at = Span::new(name.span.start, name.span.start);
+                diagnostic
+                    .with_help(format!(
+                        "declare it where it is first set: `var {} = ..`",
+                        name.value
+                    ))
+                    .replacing(at, "var ")
+            }
+        };
+        self.reports.add_unknown(name.value, diagnostic);
     }
 
     /// A local that there may be no room for.
@@ -246,4 +272,8 @@ impl<'s> Checker<'s> {
         let local = self.frame.hidden(name, of_type);
         self.room_for(local, span)
     }
+}
+
+fn is_variable(meaning: Meaning) -> bool {
+    matches!(meaning, Meaning::Global(..) | Meaning::Local(..))
 }

@@ -2,6 +2,7 @@
 
 use super::Checker;
 use super::expression::Need;
+use super::names::Found;
 use crate::fold;
 use crate::report::warning;
 use crate::tree::{Expression, ExpressionKind, Hoist};
@@ -264,10 +265,28 @@ impl<'s> Checker<'s> {
         // Comparisons turn their operands round; the places tell which was written first.
         let (first, second) = if left.span <= right.span { (left, right) } else { (right, left) };
         let message = format!("{} and {} cannot be {done}", first.of_type, second.of_type);
-        let diagnostic =
+        let mut diagnostic =
             Diagnostic::error(Code::UnitMismatch, second.span, message, second.of_type.to_string())
                 .with_label(first.span, first.of_type.to_string());
+        for side in [first, second] {
+            if let Some(declared) = self.declared_as(side) {
+                diagnostic = diagnostic.with_label(declared, "declared here");
+            }
+        }
         self.reports.add(diagnostic);
+    }
+
+    /// Where the variable is declared that an expression is.
+    fn declared_as(&self, value: &Expression) -> Option<Span> {
+        if !matches!(value.kind, ExpressionKind::Local(_) | ExpressionKind::Global(_)) {
+            return None;
+        }
+        let Span { start, end } = value.span;
+        let name = self.sources.whole().get(start as usize..end as usize)?;
+        match self.names.find(name) {
+            Found::Here(symbol) | Found::Outside(symbol) => Some(symbol.name.span),
+            Found::Nothing => None,
+        }
     }
 
     /// A real, or an integer that is written out as one; a mistake is reported.

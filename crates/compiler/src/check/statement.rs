@@ -295,31 +295,6 @@ impl<'s> Checker<'s> {
         Some(StatementKind::Store(place, binary(instr, former, value, of_type, span)))
     }
 
-    /// An assignment to a name that nothing has: a variable that was not declared, or a setting.
-    fn report_undeclared(&mut self, name: Name<'s>) {
-        let message = format!("there is no `{}`; a variable is needed here", name.value);
-        let diagnostic =
-            Diagnostic::error(Code::UnknownName, name.span, message, "declared nowhere");
-        let meant = self.reports.meant(name.value, self.names.candidates(is_variable));
-        self.reports.add(match (name.value, meant) {
-            ("speed", _) => diagnostic.with_help("a speed is set without `=`: `speed slow`"),
-            ("tool", _) => diagnostic.with_help("a tool is set without `=`: `tool NAME`"),
-            (_, Some(meant)) => {
-                self.names.mark_used(meant);
-                diagnostic.did_you_mean(name.span, meant)
-            }
-            (_, None) => {
-                let at = Span::new(name.span.start, name.span.start);
-                diagnostic
-                    .with_help(format!(
-                        "declare it where it is first set: `var {} = ..`",
-                        name.value
-                    ))
-                    .replacing(at, "var ")
-            }
-        });
-    }
-
     /// The variable that is assigned; that is no use of it.
     fn assigned(&mut self, name: Name<'s>) -> Option<(Place, ValueType)> {
         let found = match self.names.find(name.value) {
@@ -523,10 +498,6 @@ fn settle(before: &mut Statement, wait: Statement) -> Option<Statement> {
     };
     before.span = before.span.to(wait.span);
     None
-}
-
-fn is_variable(meaning: Meaning) -> bool {
-    matches!(meaning, Meaning::Global(..) | Meaning::Local(..))
 }
 
 fn level(high: bool) -> Level {

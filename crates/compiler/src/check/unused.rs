@@ -78,12 +78,15 @@ impl Checker<'_> {
         if !is_empty || self.frame.is_dead {
             return;
         }
-        let message = format!("this loop is never run: it counts {way} from {from} to {to}");
-        let mut diagnostic = warning(Code::ConstantCondition, last.span, message, at);
-        if first.span != last.span {
-            diagnostic = diagnostic.with_label(first.span, "the first");
-        }
-        self.reports.add(diagnostic);
+        // The ends of `repeat 0 times` stand both where its number does.
+        self.reports.add(if first.span == last.span {
+            let message = format!("this loop is never run: it is repeated {to} times");
+            warning(Code::ConstantCondition, last.span, message, "less than once")
+        } else {
+            let message = format!("this loop is never run: it counts {way} from {from} to {to}");
+            warning(Code::ConstantCondition, last.span, message, at)
+                .with_label(first.span, "the first")
+        });
     }
 }
 

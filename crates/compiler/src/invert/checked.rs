@@ -40,11 +40,11 @@ impl<'m> Checked<'m> {
             crossed: HashMap::new(),
             may_be_more: false,
         };
-        let reports = Reports::new(true, Allows::default());
+        let reports = Reports::new(None, Allows::default());
         let tree = check::check(sources, program, &Defaults::new(), reports).program;
         if let Some(tree) = tree {
             // What a program allows is warned about here, too.
-            let mut reports = Reports::new(true, Allows::default());
+            let mut reports = Reports::new(None, Allows::default());
             forks::check(&tree, &Effects::of(&tree), &mut reports);
             checked.may_be_more = reports.drops_warnings();
             for found in reports.into_diagnostics() {

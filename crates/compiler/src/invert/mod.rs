@@ -147,7 +147,7 @@ fn name_of<'s>(item: &Item<'s>) -> Option<&'s str> {
 /// What is said where an inverse keeps all rules of inversion and yet is no program. Its statements
 /// stand where those stand that they are the inverses of, and so does what is wrong with them.
 fn does_not_compile(sources: &Sources, inverse: &Program<'_>, name: &str) -> Vec<Diagnostic> {
-    let reports = Reports::new(true, Allows::default());
+    let reports = Reports::new(None, Allows::default());
     let (_, _, reports) = compile_tree(sources, inverse, &Defaults::new(), reports);
     let found = reports.into_diagnostics().into_iter();
     let errors = found.filter(|found| found.severity == Severity::Error);

@@ -6,11 +6,11 @@ use super::file::{
     InputsFile, ItemFile, LevelFile, OffsetFile, OutputsFile, PartFile, PoseFile, RuleFile,
     SpeedFile, SpeedsFile, ToolFile,
 };
-use super::number::{CoordinateMm, JointRad, TurnDeg};
+use super::number::{CoordinateMm, JointRad, MUST_BE_FROM, TurnDeg};
 use super::seat;
 use super::uncertainty_build::{centres, falling};
 use super::{
-    ArmSpec, Cell, CellError, ContactSpec, DEFAULT_SPEEDS, FILE_BYTES_MAX, FixtureSpec,
+    ArmSpec, Cell, CellCode, CellError, ContactSpec, DEFAULT_SPEEDS, FILE_BYTES_MAX, FixtureSpec,
     ForceSensorSpec, GripperSpec, HoleSpec, InputRule, ItemSpec, OffsetSpec, Part, PegSpec, Shape,
     SpeedSpec, ToolSpec,
 };
@@ -41,13 +41,24 @@ const GIVE_M: f64 = 0.8e-3;
 pub(super) fn parse(text: &str) -> Result<Cell, CellError> {
     if text.len() > FILE_BYTES_MAX {
         let message = format!("the file has {} bytes, at most {FILE_BYTES_MAX}", text.len());
-        return Err(CellError::at(text, 0, message));
+        return Err(CellError::at(text, 0, message).of(CellCode::TooMany));
     }
     let file: CellFile = toml::from_str(text).map_err(|error| {
         let byte = error.span().map_or(0, |span| span.start);
-        CellError::at(text, byte, error.message())
+        CellError::at(text, byte, error.message()).of(kind_of(text, error.message()))
     })?;
     Builder { text }.cell(&file)
+}
+
+/// What is wrong with a text that the reader refuses.
+fn kind_of(text: &str, message: &str) -> CellCode {
+    if toml::from_str::<toml::Table>(text).is_err() {
+        CellCode::Toml
+    } else if message.contains(MUST_BE_FROM) {
+        CellCode::Range
+    } else {
+        CellCode::Key
+    }
 }
 
 pub(super) struct Builder<'a> {
@@ -96,7 +107,8 @@ impl Builder<'_> {
         if count <= limit {
             return Ok(());
         }
-        Err(CellError::at(self.text, 0, format!("there are {count} {what}, at most {limit}")))
+        let message = format!("there are {count} {what}, at most {limit}");
+        Err(CellError::at(self.text, 0, message).of(CellCode::TooMany))
     }
 
     pub(super) fn unique<'n>(
@@ -109,11 +121,11 @@ impl Builder<'_> {
             if characters == 0 || characters > NAME_CHARACTERS_MAX {
                 let message =
                     format!("a name has 1 to {NAME_CHARACTERS_MAX} characters, not {characters}");
-                return Err(self.error(name, message));
+                return Err(self.error(name, message).of(CellCode::Range));
             }
             if !seen.insert(name.get_ref()) {
                 let message = format!("the name `{}` is taken already", name.get_ref());
-                return Err(self.error(name, message));
+                return Err(self.error(name, message).of(CellCode::Twice));
             }
         }
         Ok(())
@@ -163,7 +175,8 @@ impl Builder<'_> {
 
     fn parts(&self, body: &[Spanned<PartFile>]) -> Result<Vec<Part>, CellError> {
         if let Some(part) = body.get(PARTS_MAX) {
-            return Err(self.error(part, format!("a body has at most {PARTS_MAX} parts")));
+            let message = format!("a body has at most {PARTS_MAX} parts");
+            return Err(self.error(part, message).of(CellCode::TooMany));
         }
         body.iter().map(|part| self.part(part)).collect()
     }
@@ -184,7 +197,7 @@ impl Builder<'_> {
     fn pins(&self, count: &Spanned<u16>) -> Result<u16, CellError> {
         if *count.get_ref() > PINS_MAX {
             let message = format!("{} are too many, at most {PINS_MAX}", count.get_ref());
-            return Err(self.error(count, message));
+            return Err(self.error(count, message).of(CellCode::TooMany));
         }
         Ok(*count.get_ref())
     }
@@ -193,7 +206,7 @@ impl Builder<'_> {
         if *output.get_ref() >= count {
             let message =
                 format!("there is no output {}: outputs are 0 to below {count}", output.get_ref());
-            return Err(self.error(output, message));
+            return Err(self.error(output, message).of(CellCode::UnknownName));
         }
         Ok(*output.get_ref())
     }
@@ -210,7 +223,8 @@ impl Builder<'_> {
                 let found = tools.iter().position(|tool| &tool.name == name.get_ref());
                 let index = found.and_then(|index| u16::try_from(index).ok());
                 index.ok_or_else(|| {
-                    self.error(name, format!("there is no tool `{}`", name.get_ref()))
+                    let message = format!("there is no tool `{}`", name.get_ref());
+                    self.error(name, message).of(CellCode::UnknownName)
                 })?
             }
         };
@@ -233,11 +247,11 @@ impl Builder<'_> {
             let number = *rule.input.get_ref();
             let Some(slot) = rules.get_mut(usize::from(number)) else {
                 let message = format!("there is no input {number}: inputs are 0 to below {count}");
-                return Err(self.error(&rule.input, message));
+                return Err(self.error(&rule.input, message).of(CellCode::UnknownName));
             };
             if slot.is_some() {
                 let message = format!("input {number} has a rule already");
-                return Err(self.error(&rule.input, message));
+                return Err(self.error(&rule.input, message).of(CellCode::Twice));
             }
             *slot = Some(self.rule(rule, outputs)?);
         }
@@ -257,7 +271,7 @@ impl Builder<'_> {
             (None, None, Some(changes), None) => {
                 if changes.get_ref().len() > CHANGES_MAX {
                     let message = format!("an input changes at most {CHANGES_MAX} times");
-                    return Err(self.error(changes, message));
+                    return Err(self.error(changes, message).of(CellCode::TooMany));
                 }
                 let mut list: Vec<(f64, bool)> = Vec::with_capacity(changes.get_ref().len());
                 for change in changes.get_ref() {
@@ -333,7 +347,8 @@ impl Builder<'_> {
         before: &[FixtureSpec],
     ) -> Result<FixtureSpec, CellError> {
         if let Some(hole) = file.hole.get(HOLES_MAX) {
-            return Err(self.error(hole, format!("a fixture has at most {HOLES_MAX} holes")));
+            let message = format!("a fixture has at most {HOLES_MAX} holes");
+            return Err(self.error(hole, message).of(CellCode::TooMany));
         }
         let parts = self.parts(&file.body)?;
         let holes = file.hole.iter().enumerate();
@@ -414,7 +429,7 @@ impl Builder<'_> {
         if let Some(window) = &file.window {
             if !(1..=WINDOW_MAX).contains(window.get_ref()) {
                 let message = format!("the window is 1 to {WINDOW_MAX} samples");
-                return Err(self.error(window, message));
+                return Err(self.error(window, message).of(CellCode::Range));
             }
             sensor.window = *window.get_ref();
         }

@@ -5,6 +5,7 @@
 //! are: that is drawn when a [`Sim`](crate::Sim) is made.
 
 mod build;
+mod code;
 mod error;
 mod file;
 mod number;
@@ -17,6 +18,7 @@ mod uncertainty;
 mod uncertainty_build;
 mod uncertainty_file;
 
+pub use code::CellCode;
 pub use error::CellError;
 pub use places::CellPlaces;
 pub use uncertainty::{ChanceSpec, FallSpec, FeederSpec, InputFlaw, SlipSpec};

@@ -5,6 +5,9 @@
 
 use serde::Deserialize;
 
+/// How it is said that a number is out of range.
+pub(super) const MUST_BE_FROM: &str = "it must be from";
+
 /// Defines a checked number: its name, what to call it, and the closed range it must lie in.
 macro_rules! numbers {
     ($($(#[$doc:meta])* $name:ident, $what:literal, $low:expr, $high:expr;)*) => {$(
@@ -21,7 +24,7 @@ macro_rules! numbers {
                 if value >= low && value <= high {
                     Ok(Self(value))
                 } else {
-                    Err(format!("{value} is not {}: it must be from {low} to {high}", $what))
+                    Err(format!("{value} is not {}: {MUST_BE_FROM} {low} to {high}", $what))
                 }
             }
         }

@@ -4,7 +4,7 @@
 
 use super::build::{Builder, joints, pose_of};
 use super::file::PlaceFile;
-use super::{CellError, FixtureSpec, On};
+use super::{CellCode, CellError, FixtureSpec, On};
 use crate::kinematics::forward;
 use obverse_geometry::Pose;
 use toml::Spanned;
@@ -58,7 +58,7 @@ impl Builder<'_> {
                  describes, and a fixture on one that stands above it in the file",
                 name.get_ref()
             );
-            self.error(name, message)
+            self.error(name, message).of(CellCode::UnknownName)
         })
     }
 }

@@ -6,8 +6,8 @@ use super::file::CellFile;
 use super::number::Probability;
 use super::uncertainty_file::{CentresFile, FallingFile, FeederFile, SlipFile};
 use super::{
-    CellError, ChanceSpec, FallSpec, FeederSpec, InputFlaw, InputRule, ItemSpec, OffsetSpec,
-    SlipSpec,
+    CellCode, CellError, ChanceSpec, FallSpec, FeederSpec, InputFlaw, InputRule, ItemSpec,
+    OffsetSpec, SlipSpec,
 };
 use toml::Spanned;
 
@@ -60,7 +60,7 @@ impl Builder<'_> {
             let spec = self.feeder(feeder, items, outputs)?;
             if feeders.iter().any(|other| other.item == spec.item) {
                 let message = format!("another feeder presents `{}`", feeder.item.get_ref());
-                return Err(self.error(&feeder.item, message));
+                return Err(self.error(&feeder.item, message).of(CellCode::Twice));
             }
             feeders.push(spec);
             if let Some(input) = &feeder.input {
@@ -78,7 +78,8 @@ impl Builder<'_> {
     ) -> Result<FeederSpec, CellError> {
         let item = items.iter().position(|item| &item.name == file.item.get_ref());
         let item = item.ok_or_else(|| {
-            self.error(&file.item, format!("there is no item `{}`", file.item.get_ref()))
+            let message = format!("there is no item `{}`", file.item.get_ref());
+            self.error(&file.item, message).of(CellCode::UnknownName)
         })?;
         let askew_offset = offset(&file.askew_offset);
         if let Some(askew) = &file.askew
@@ -113,7 +114,7 @@ impl Builder<'_> {
         let has_rule = file.inputs.rule.iter().any(|rule| rule.input.get_ref() == input.get_ref());
         if has_rule || matches!(inputs[index], InputRule::PartThere { .. }) {
             let message = format!("input {index} has a rule already");
-            return Err(self.error(input, message));
+            return Err(self.error(input, message).of(CellCode::Twice));
         }
         inputs[index] = InputRule::PartThere { feeder };
         Ok(())
@@ -125,7 +126,7 @@ impl Builder<'_> {
             return Ok(index);
         }
         let message = format!("there is no input {index}: inputs are 0 to below {count}");
-        Err(self.error(input, message))
+        Err(self.error(input, message).of(CellCode::UnknownName))
     }
 
     pub(super) fn chance(&self, file: &CellFile, outputs: u16) -> Result<ChanceSpec, CellError> {
@@ -166,7 +167,8 @@ impl Builder<'_> {
     ) -> Result<(), CellError> {
         let first = list.find(|other| other.get_ref() == line.get_ref());
         if first.is_some_and(|first| first.span() != line.span()) {
-            return Err(self.error(line, format!("line {} is here twice", line.get_ref())));
+            let message = format!("line {} is here twice", line.get_ref());
+            return Err(self.error(line, message).of(CellCode::Twice));
         }
         Ok(())
     }

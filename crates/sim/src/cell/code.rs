@@ -1,0 +1,128 @@
+//! The codes of what is wrong with a workcell file, or with a program in it: a row a code, with the
+//! page that explains it.
+//!
+//! A code is stable: it is never given another meaning nor used again. `C01xx` is the file, `C02xx`
+//! what a program needs and the workcell has not. Knows nothing of how any of it is found.
+
+macro_rules! codes {
+    ($($name:ident $code:literal $title:literal
+       why $why:literal wrong $wrong:literal right $right:literal)*) => {
+        /// A kind of mistake in a workcell file.
+        #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+        pub enum CellCode {
+            $(#[doc = concat!($code, ": ", $title, ".")] $name,)*
+        }
+
+        impl CellCode {
+            /// Every code, in the table's order.
+            pub const ALL: &'static [Self] = &[$(Self::$name),*];
+
+            /// The stable code: `C0101`.
+            #[must_use]
+            pub fn as_str(self) -> &'static str {
+                match self { $(Self::$name => $code,)* }
+            }
+
+            /// What is wrong, in a few words.
+            #[must_use]
+            pub fn title(self) -> &'static str {
+                match self { $(Self::$name => $title,)* }
+            }
+
+            /// Why it is wrong, and what is asked for.
+            #[must_use]
+            pub fn reason(self) -> &'static str {
+                match self { $(Self::$name => $why,)* }
+            }
+
+            /// A workcell file that has this mistake; empty where one cannot be shown.
+            #[must_use]
+            pub fn wrong_example(self) -> &'static str {
+                match self { $(Self::$name => $wrong,)* }
+            }
+
+            /// The same without it.
+            #[must_use]
+            pub fn right_example(self) -> &'static str {
+                match self { $(Self::$name => $right,)* }
+            }
+        }
+    };
+}
+
+codes! {
+    Toml "C0101" "a workcell file that is no TOML"
+        why "A workcell file is written in TOML: tables in brackets, keys and values with `=` \
+             between, texts in quotes."
+        wrong "[arm\nhome_rad = [0, -1.5, 1.5, 0, 0, 0]"
+        right "[arm]\nhome_rad = [0, -1.5, 1.5, 0, 0, 0]"
+    Key "C0102" "a key that is unknown, missing, or of another type"
+        why "Each table of a workcell file has its keys, some of which it must have, each with \
+             values of one type. A key that is not known is refused, since it is most likely \
+             misspelt and would otherwise do nothing."
+        wrong "[arm]\nhome_rads = [0, -1.5, 1.5, 0, 0, 0]"
+        right "[arm]\nhome_rad = [0, -1.5, 1.5, 0, 0, 0]"
+    Range "C0103" "a number that is out of range"
+        why "Every number has a range that makes sense for what it is, in the unit that its key \
+             ends with. Often the unit was another one: metres in place of millimetres."
+        wrong "[arm]\nhome_rad = [0, -90, 90, 0, 0, 0]"
+        right "[arm]\nhome_rad = [0, -1.5, 1.5, 0, 0, 0]"
+    UnknownName "C0104" "a name or number that the file gives to nothing"
+        why "Tools, items and fixtures are named by tables of the file, and outputs and inputs are \
+             numbered from 0 to below the count of their table. A thing stands on a fixture that \
+               is \
+             described above it."
+        wrong "[arm]\nhome_rad = [0, -1.5, 1.5, 0, 0, 0]\n[inputs]\ncount = 2\n[[inputs.rule]]\n\
+               input = 2\nholding = true"
+        right "[arm]\nhome_rad = [0, -1.5, 1.5, 0, 0, 0]\n[inputs]\ncount = 2\n[[inputs.rule]]\n\
+               input = 1\nholding = true"
+    Twice "C0105" "something that is there twice"
+        why "Tools, items, fixtures and feeders each have names of their own, a line of outputs or \
+             inputs is described once, and an item comes from one feeder."
+        wrong "[arm]\nhome_rad = [0, -1.5, 1.5, 0, 0, 0]\n[[tool]]\nname = \"a\"\n[[tool]]\nname \
+               = \"a\""
+        right "[arm]\nhome_rad = [0, -1.5, 1.5, 0, 0, 0]\n[[tool]]\nname = \"a\"\n[[tool]]\nname \
+               = \"b\""
+    TooMany "C0106" "more than there may be"
+        why "A workcell has limits, so that it is simulated in reasonable time and memory: of \
+             items, fixtures, tools, parts of a body, lines, changes of an input, and of the file \
+             itself."
+        wrong "[arm]\nhome_rad = [0, -1.5, 1.5, 0, 0, 0]\n[outputs]\ncount = 2000"
+        right "[arm]\nhome_rad = [0, -1.5, 1.5, 0, 0, 0]\n[outputs]\ncount = 200"
+    Contradiction "C0107" "keys that do not go together"
+        why "Each key by itself is right, and together they describe nothing that can be: the home \
+             of the arm is outside the range of a joint, a hole is not in its fixture, a chamfer \
+             takes the whole tip, one key needs another or excludes it."
+        wrong "[arm]\nhome_rad = [0, -1.5, 1.5, 0, 0, 0]\nlimits_deg = [[-170, 170], [-60, 60], \
+               [-170, 170], [-170, 170], [-170, 170], [-170, 170]]"
+        right "[arm]\nhome_rad = [0, -1.0, 1.5, 0, 0, 0]\nlimits_deg = [[-170, 170], [-60, 60], \
+               [-170, 170], [-170, 170], [-170, 170], [-170, 170]]"
+    NoItem "C0201" "an item that the workcell has not"
+        why "A program that declares an item runs in a workcell that has one of this name: a table \
+             `[[item]]`. The example is for a program with `item vial { .. }`."
+        wrong "[arm]\nhome_rad = [0, -1.5, 1.5, 0, 0, 0]\n[outputs]\ncount = 4\n[inputs]\ncount = \
+               4\n[[tool]]\nname = \"gripper\""
+        right "[arm]\nhome_rad = [0, -1.5, 1.5, 0, 0, 0]\n[outputs]\ncount = 4\n[inputs]\ncount = \
+               4\n[[tool]]\nname = \"gripper\"\n[[item]]\nname = \"vial\"\nplace = { }"
+    NoTool "C0202" "a tool that the workcell has not"
+        why "A program that mounts a tool runs in a workcell that has one of this name: a table \
+             `[[tool]]`. The example is for a program with `tool gripper`."
+        wrong "[arm]\nhome_rad = [0, -1.5, 1.5, 0, 0, 0]\n[outputs]\ncount = 4\n[inputs]\ncount = \
+               4\n[[item]]\nname = \"vial\"\nplace = { }"
+        right "[arm]\nhome_rad = [0, -1.5, 1.5, 0, 0, 0]\n[outputs]\ncount = 4\n[inputs]\ncount = \
+               4\n[[tool]]\nname = \"gripper\"\n[[item]]\nname = \"vial\"\nplace = { }"
+    NoOutput "C0203" "an output that the workcell has not"
+        why "Outputs are numbered from 0 to below the `count` of `[outputs]`. The example is for a \
+             program with `set 3 high`."
+        wrong "[arm]\nhome_rad = [0, -1.5, 1.5, 0, 0, 0]\n[outputs]\ncount = 3\n[inputs]\ncount = \
+               4\n[[tool]]\nname = \"gripper\"\n[[item]]\nname = \"vial\"\nplace = { }"
+        right "[arm]\nhome_rad = [0, -1.5, 1.5, 0, 0, 0]\n[outputs]\ncount = 4\n[inputs]\ncount = \
+               4\n[[tool]]\nname = \"gripper\"\n[[item]]\nname = \"vial\"\nplace = { }"
+    NoInput "C0204" "an input that the workcell has not"
+        why "Inputs are numbered from 0 to below the `count` of `[inputs]`. The example is for a \
+             program with `if input 3 { .. }`."
+        wrong "[arm]\nhome_rad = [0, -1.5, 1.5, 0, 0, 0]\n[outputs]\ncount = 4\n[inputs]\ncount = \
+               3\n[[tool]]\nname = \"gripper\"\n[[item]]\nname = \"vial\"\nplace = { }"
+        right "[arm]\nhome_rad = [0, -1.5, 1.5, 0, 0, 0]\n[outputs]\ncount = 4\n[inputs]\ncount = \
+               4\n[[tool]]\nname = \"gripper\"\n[[item]]\nname = \"vial\"\nplace = { }"
+}
