@@ -2,34 +2,21 @@
 //! What each code is for is held by tests of the crates that report it.
 
 use obverse_bytecode::ModuleCode;
+use obverse_codes::Page;
+use obverse_codes::index::page;
 use obverse_sim::CellCode;
 use obverse_syntax::codes::Code;
-use obverse_syntax::index::{Entry, page};
 
 const PATH: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/docs/codes.md");
 
-/// What stands behind the codes of the compiler.
-fn others() -> Vec<Entry> {
-    let cells = CellCode::ALL.iter().map(|code| Entry {
-        code: code.as_str(),
-        title: code.title(),
-        reason: code.reason(),
-        wrong: code.wrong_example(),
-        right: code.right_example(),
-    });
-    let modules = ModuleCode::ALL.iter().map(|code| Entry {
-        code: code.as_str(),
-        title: code.title(),
-        reason: code.reason(),
-        wrong: code.wrong_example(),
-        right: code.right_example(),
-    });
-    cells.chain(modules).collect()
+/// The pages of the codes of programs, of workcells, and of assembly text and modules.
+fn pages() -> Vec<Page> {
+    Code::pages().chain(CellCode::pages()).chain(ModuleCode::pages()).collect()
 }
 
 #[test]
 fn the_index_is_fresh() {
-    let page = page(&others());
+    let page = page(&pages());
     if std::env::var_os("UPDATE").is_some() {
         let folder = std::path::Path::new(PATH).parent().expect("a folder");
         std::fs::create_dir_all(folder).expect("docs can be made");
@@ -44,9 +31,8 @@ fn the_index_is_fresh() {
 
 #[test]
 fn every_code_has_a_section_with_its_reason() {
-    let page = page(&others());
-    let all = Code::ALL.iter().map(|code| Entry::from(*code)).chain(others());
-    for Entry { code, title, reason, .. } in all {
+    let page = page(&pages());
+    for Page { code, title, reason, .. } in pages() {
         assert_eq!(page.matches(&format!("\n## {code}\n")).count(), 1, "{code}");
         assert!(page.contains(&format!("| [{code}](#{})", code.to_lowercase())), "{code}");
         let words = |text: &str| text.split_whitespace().collect::<Vec<_>>().join(" ");

@@ -204,9 +204,9 @@ fn what_a_program_needs_and_its_workcell_lacks_has_the_code_of_its_page() {
                  tool gripper { move 1 mm up }\n  move to vial.above\n}\n";
     bench.write("needs.obv", needs);
     for code in CellCode::ALL.iter().filter(|code| code.as_str().starts_with("C02")) {
-        bench.write("c.toml", code.wrong_example());
+        bench.write("c.toml", code.page().wrong);
         assert_eq!(codes(&bench, &["needs.obv", "--cell", "c.toml"]), [code.as_str()]);
-        bench.write("c.toml", code.right_example());
+        bench.write("c.toml", code.page().right);
         assert_eq!(codes(&bench, &["needs.obv", "--cell", "c.toml"]), [""; 0]);
     }
 }
@@ -216,13 +216,13 @@ fn whatever_is_wrong_with_a_file_has_a_code_that_is_explained() {
     let bench = Bench::new("codes_of_files");
     let mut seen = Vec::new();
     for code in CellCode::ALL.iter().filter(|code| code.as_str().starts_with("C01")) {
-        bench.write("c.toml", code.wrong_example());
+        bench.write("c.toml", code.page().wrong);
         let found = codes(&bench, &["bad_pin.obv", "--cell", "c.toml"]);
         assert_eq!(found, [code.as_str()]);
         seen.extend(found);
     }
-    for code in ModuleCode::ALL.iter().filter(|code| !code.wrong_example().is_empty()) {
-        bench.write("x.obvasm", code.wrong_example());
+    for code in ModuleCode::ALL.iter().filter(|code| !code.page().wrong.is_empty()) {
+        bench.write("x.obvasm", code.page().wrong);
         let found = codes(&bench, &["x.obvasm"]);
         assert_eq!(found.first().map(String::as_str), Some(code.as_str()));
         seen.extend(found);

@@ -4,53 +4,9 @@
 //! A code is stable: it is never given another meaning nor used again. `A01xx` is the text, `A02xx`
 //! a rule of the verifier, `A03xx` the bytes of a module. Knows nothing of how any of it is found.
 
-macro_rules! codes {
-    ($($name:ident $code:literal $title:literal
-       why $why:literal wrong $wrong:literal right $right:literal)*) => {
-        /// A kind of mistake in assembly text or in a module.
-        #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
-        pub enum ModuleCode {
-            $(#[doc = concat!($code, ": ", $title, ".")] $name,)*
-        }
+obverse_codes::table! {
+    ModuleCode "A kind of mistake in assembly text or in a module."
 
-        impl ModuleCode {
-            /// Every code, in the table's order.
-            pub const ALL: &'static [Self] = &[$(Self::$name),*];
-
-            /// The stable code: `A0101`.
-            #[must_use]
-            pub fn as_str(self) -> &'static str {
-                match self { $(Self::$name => $code,)* }
-            }
-
-            /// What is wrong, in a few words.
-            #[must_use]
-            pub fn title(self) -> &'static str {
-                match self { $(Self::$name => $title,)* }
-            }
-
-            /// Why it is wrong, and what is asked for.
-            #[must_use]
-            pub fn reason(self) -> &'static str {
-                match self { $(Self::$name => $why,)* }
-            }
-
-            /// An assembly text that has this mistake; empty where text cannot.
-            #[must_use]
-            pub fn wrong_example(self) -> &'static str {
-                match self { $(Self::$name => $wrong,)* }
-            }
-
-            /// The same without it.
-            #[must_use]
-            pub fn right_example(self) -> &'static str {
-                match self { $(Self::$name => $right,)* }
-            }
-        }
-    };
-}
-
-codes! {
     Header "A0101" "assembly text of another kind"
         why "Assembly text begins with the line `obvasm 1`, which says what it is and of which \
              version."

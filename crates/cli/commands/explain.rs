@@ -4,11 +4,11 @@ use super::Result;
 use crate::problem::Problem;
 use crate::{Outcome, write};
 use obverse_bytecode::ModuleCode;
+use obverse_codes::Page;
 use obverse_isa::{OPS, Opcode, reference};
 use obverse_preflight::Reason;
 use obverse_sim::CellCode;
 use obverse_syntax::codes::Code;
-use obverse_syntax::index::Entry;
 use serde_json::{Value, json};
 
 /// How wide prose is set.
@@ -36,8 +36,8 @@ pub(crate) fn run(arguments: &Arguments) -> Result {
         write::out(&set(&reference::explain(opcode.info())));
         return Ok(Outcome::Done);
     }
-    if let Some(entry) = entry(word) {
-        write::out(&set(&entry.explanation()));
+    if let Some(page) = page(word) {
+        write::out(&set(&page.explanation()));
         return Ok(Outcome::Done);
     }
     if let Ok(reason) = word.parse::<Reason>() {
@@ -50,11 +50,11 @@ pub(crate) fn run(arguments: &Arguments) -> Result {
 /// Every code of a diagnostic and of a reason with its title, a line each.
 fn list(is_json: bool) {
     if is_json {
-        let codes = entries().map(|entry| of_code(&entry));
+        let codes = pages().map(|page| of_code(&page));
         tell(codes.chain(Reason::ALL.iter().map(|reason| of_reason(*reason))));
         return;
     }
-    for Entry { code, title, .. } in entries() {
+    for Page { code, title, .. } in pages() {
         write::line(&format!("{code}  {title}"));
     }
     for reason in Reason::ALL {
@@ -77,43 +77,29 @@ fn as_json(word: &str) -> Result {
         tell(std::iter::once(of_reason(reason)));
         return Ok(Outcome::Done);
     }
-    let entry = entry(word).ok_or_else(|| unknown(word))?;
-    tell(std::iter::once(of_code(&entry)));
+    let page = page(word).ok_or_else(|| unknown(word))?;
+    tell(std::iter::once(of_code(&page)));
     Ok(Outcome::Done)
 }
 
-/// What is known of the codes of programs, of workcells, and of assembly text and modules.
-fn entries() -> impl Iterator<Item = Entry> {
-    let cells = CellCode::ALL.iter().map(|code| Entry {
-        code: code.as_str(),
-        title: code.title(),
-        reason: code.reason(),
-        wrong: code.wrong_example(),
-        right: code.right_example(),
-    });
-    let modules = ModuleCode::ALL.iter().map(|code| Entry {
-        code: code.as_str(),
-        title: code.title(),
-        reason: code.reason(),
-        wrong: code.wrong_example(),
-        right: code.right_example(),
-    });
-    Code::ALL.iter().map(|code| Entry::from(*code)).chain(cells).chain(modules)
+/// The pages of the codes of programs, of workcells, and of assembly text and modules.
+fn pages() -> impl Iterator<Item = Page> {
+    Code::pages().chain(CellCode::pages()).chain(ModuleCode::pages())
 }
 
 /// What is known of a code, however it is written.
-fn entry(word: &str) -> Option<Entry> {
-    entries().find(|entry| entry.code.eq_ignore_ascii_case(word))
+fn page(word: &str) -> Option<Page> {
+    pages().find(|page| page.code.eq_ignore_ascii_case(word))
 }
 
-fn of_code(entry: &Entry) -> Value {
+fn of_code(page: &Page) -> Value {
     json!({
         "type": "code",
-        "code": entry.code,
-        "title": entry.title,
-        "explanation": entry.explanation(),
-        "wrong": entry.wrong,
-        "right": entry.right,
+        "code": page.code,
+        "title": page.title,
+        "explanation": page.explanation(),
+        "wrong": page.wrong,
+        "right": page.right,
     })
 }
 
@@ -136,7 +122,7 @@ fn tell(objects: impl Iterator<Item = Value>) {
 }
 
 fn unknown(word: &str) -> Problem {
-    let codes = entries().map(|entry| entry.code);
+    let codes = pages().map(|page| page.code);
     let reasons = Reason::ALL.iter().map(|reason| reason.code());
     let words = OPS.iter().map(|row| row.mnemonic).chain(codes).chain(reasons);
     let near = obverse_syntax::nearest(word, words);

@@ -115,7 +115,7 @@ impl<'s, 'k> Lexer<'s, 'k> {
             Code::ForeignOperator,
             self.span(),
             message,
-            Code::ForeignOperator.title(),
+            Code::ForeignOperator.page().title,
         );
         let after = if token == Token::ForeignNot { " " } else { "" };
         self.sink.report(
@@ -399,7 +399,7 @@ impl<'s, 'k> Lexer<'s, 'k> {
         let text = self.tokens.slice();
         let instead = if text.starts_with('.') { format!("0{text}") } else { format!("{text}0") };
         let message = "a digit is missing beside the point";
-        let at = Code::MalformedNumber.title();
+        let at = Code::MalformedNumber.page().title;
         self.sink.report(
             Diagnostic::error(Code::MalformedNumber, self.span(), message, at)
                 .write_instead(self.span(), &instead),
@@ -447,7 +447,7 @@ impl<'s, 'k> Lexer<'s, 'k> {
         let slice = self.tokens.slice();
         let mut span = self.span();
         span.end = span.start + slice.trim_end().len() as u32;
-        let mut diagnostic = Diagnostic::error(code, span, message, code.title());
+        let mut diagnostic = Diagnostic::error(code, span, message, code.page().title);
         diagnostic.help = help(slice);
         self.sink.report(diagnostic);
     }

@@ -14,7 +14,6 @@ mod foreign;
 pub mod format;
 mod habits;
 mod imports;
-pub mod index;
 mod left_out;
 mod lexer;
 mod nearest;

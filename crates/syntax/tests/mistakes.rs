@@ -41,9 +41,9 @@ fn the_examples_of_the_pages_are_what_they_say() {
     for code in Code::ALL.iter().filter(is_of_syntax) {
         let codes =
             |source| parse(source).diagnostics.iter().map(|one| one.code).collect::<Vec<_>>();
-        assert_eq!(codes(code.right_example()), [], "{code}: right");
-        if !code.wrong_example().is_empty() {
-            assert_eq!(codes(code.wrong_example()), [*code], "{code}: wrong");
+        assert_eq!(codes(code.page().right), [], "{code}: right");
+        if !code.page().wrong.is_empty() {
+            assert_eq!(codes(code.page().wrong), [*code], "{code}: wrong");
         }
     }
 }
@@ -54,7 +54,7 @@ fn codes_are_unique_and_sorted_and_found_by_name() {
     assert!(codes.is_sorted_by(|a, b| a < b), "{codes:?}");
     for code in Code::ALL {
         assert_eq!(code.as_str().to_lowercase().parse(), Ok(*code));
-        assert!(code.explanation().starts_with(code.as_str()));
+        assert!(code.page().explanation().starts_with(code.as_str()));
     }
     assert!("E9999".parse::<Code>().is_err());
 }

@@ -306,8 +306,8 @@ fn codes(text: &str) -> Vec<ModuleCode> {
 fn the_examples_of_the_pages_are_what_they_say() {
     // Bytes that are no module cannot be shown as text.
     for code in ModuleCode::ALL.iter().filter(|code| **code != ModuleCode::Bytes) {
-        assert_eq!(codes(code.right_example()).first(), None, "{}", code.as_str());
-        assert_eq!(codes(code.wrong_example()).first(), Some(code), "{}", code.as_str());
+        assert_eq!(codes(code.page().right).first(), None, "{}", code.as_str());
+        assert_eq!(codes(code.page().wrong).first(), Some(code), "{}", code.as_str());
     }
     assert!(ModuleCode::ALL.iter().map(|code| code.as_str()).is_sorted_by(|a, b| a < b));
 }

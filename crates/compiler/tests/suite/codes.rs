@@ -15,8 +15,8 @@ fn codes_of_the_compiler() -> impl Iterator<Item = Code> {
 
 #[test]
 fn the_wrong_example_has_its_code_and_no_other() {
-    for code in codes_of_the_compiler().filter(|code| !code.wrong_example().is_empty()) {
-        let found = findings(code.wrong_example());
+    for code in codes_of_the_compiler().filter(|code| !code.page().wrong.is_empty()) {
+        let found = findings(code.page().wrong);
         assert_eq!(found.len(), 1, "{code}: {found:#?}");
         assert!(found[0].starts_with(code.as_str()), "{code}: {found:#?}");
     }
@@ -24,22 +24,22 @@ fn the_wrong_example_has_its_code_and_no_other() {
 
 #[test]
 fn the_right_example_compiles_without_a_word() {
-    for code in codes_of_the_compiler().filter(|code| !code.right_example().is_empty()) {
-        assert_eq!(findings(code.right_example()), Vec::<String>::new(), "{code}");
-        module(code.right_example());
+    for code in codes_of_the_compiler().filter(|code| !code.page().right.is_empty()) {
+        assert_eq!(findings(code.page().right), Vec::<String>::new(), "{code}");
+        module(code.page().right);
     }
 }
 
 #[test]
 fn the_examples_of_inversion_are_inverted_or_refused() {
     for code in Code::ALL.iter().copied().filter(|code| is_of_inversion(*code)) {
-        match invert("example.obv", code.wrong_example(), "main") {
+        match invert("example.obv", code.page().wrong, "main") {
             Err(NoInverse::Diagnosed(found)) => {
                 let codes: Vec<Code> = found.iter().map(|one| one.code).collect();
                 assert_eq!(codes, [code]);
             }
             other => panic!("{code}: {other:?}"),
         }
-        assert!(invert("example.obv", code.right_example(), "main").is_ok(), "{code}");
+        assert!(invert("example.obv", code.page().right, "main").is_ok(), "{code}");
     }
 }

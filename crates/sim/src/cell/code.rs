@@ -4,53 +4,9 @@
 //! A code is stable: it is never given another meaning nor used again. `C01xx` is the file, `C02xx`
 //! what a program needs and the workcell has not. Knows nothing of how any of it is found.
 
-macro_rules! codes {
-    ($($name:ident $code:literal $title:literal
-       why $why:literal wrong $wrong:literal right $right:literal)*) => {
-        /// A kind of mistake in a workcell file.
-        #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
-        pub enum CellCode {
-            $(#[doc = concat!($code, ": ", $title, ".")] $name,)*
-        }
+obverse_codes::table! {
+    CellCode "A kind of mistake in a workcell file."
 
-        impl CellCode {
-            /// Every code, in the table's order.
-            pub const ALL: &'static [Self] = &[$(Self::$name),*];
-
-            /// The stable code: `C0101`.
-            #[must_use]
-            pub fn as_str(self) -> &'static str {
-                match self { $(Self::$name => $code,)* }
-            }
-
-            /// What is wrong, in a few words.
-            #[must_use]
-            pub fn title(self) -> &'static str {
-                match self { $(Self::$name => $title,)* }
-            }
-
-            /// Why it is wrong, and what is asked for.
-            #[must_use]
-            pub fn reason(self) -> &'static str {
-                match self { $(Self::$name => $why,)* }
-            }
-
-            /// A workcell file that has this mistake; empty where one cannot be shown.
-            #[must_use]
-            pub fn wrong_example(self) -> &'static str {
-                match self { $(Self::$name => $wrong,)* }
-            }
-
-            /// The same without it.
-            #[must_use]
-            pub fn right_example(self) -> &'static str {
-                match self { $(Self::$name => $right,)* }
-            }
-        }
-    };
-}
-
-codes! {
     Toml "C0101" "a workcell file that is no TOML"
         why "A workcell file is written in TOML: tables in brackets, keys and values with `=` \
              between, texts in quotes."

@@ -317,9 +317,9 @@ fn what_stands_on_a_fixture_is_placed_in_its_frame() {
 #[test]
 fn the_examples_of_the_pages_are_what_they_say() {
     for code in CellCode::ALL.iter().filter(|code| code.as_str().starts_with("C01")) {
-        let wrong = Cell::parse(code.wrong_example()).expect_err(code.as_str());
+        let wrong = Cell::parse(code.page().wrong).expect_err(code.as_str());
         assert_eq!(wrong.code, *code, "{wrong}");
-        let right = Cell::parse(code.right_example());
+        let right = Cell::parse(code.page().right);
         assert!(right.is_ok(), "{}: {right:?}", code.as_str());
     }
     assert!(CellCode::ALL.iter().map(|code| code.as_str()).is_sorted_by(|a, b| a < b));

@@ -1,50 +1,10 @@
-//! The index of all diagnostics as a page for people. It knows how the page looks, and no code.
+//! The pages of many codes as one page for people. It knows how that looks, and no code.
 
-use crate::codes::Code;
+use crate::Page;
 
-/// What a page says of a code, of whatever is diagnosed.
-#[derive(Clone, Copy, Debug)]
-pub struct Entry {
-    /// The stable code.
-    pub code: &'static str,
-    /// What is wrong, in a few words.
-    pub title: &'static str,
-    /// Why it is wrong, and what is asked for.
-    pub reason: &'static str,
-    /// An example that has the mistake; empty where one cannot be shown.
-    pub wrong: &'static str,
-    /// The same without it.
-    pub right: &'static str,
-}
-
-impl Entry {
-    /// The page that explains it: what, why, an example wrong and the same right.
-    #[must_use]
-    pub fn explanation(&self) -> String {
-        let Self { code, title, reason, wrong, right } = self;
-        let examples = match wrong.is_empty() {
-            true => String::new(),
-            false => format!("\n\nWrong:\n\n{wrong}\n\nRight:\n\n{right}"),
-        };
-        format!("{code}: {title}\n\n{reason}{examples}\n")
-    }
-}
-
-impl From<Code> for Entry {
-    fn from(code: Code) -> Self {
-        Self {
-            code: code.as_str(),
-            title: code.title(),
-            reason: code.reason(),
-            wrong: code.wrong_example(),
-            right: code.right_example(),
-        }
-    }
-}
-
-/// The index of all codes, those of the compiler and others behind them, as a page: docs/codes.md.
+/// The index of all codes as a page: docs/codes.md.
 #[must_use]
-pub fn page(others: &[Entry]) -> String {
+pub fn page(pages: &[Page]) -> String {
     let mut page = format!(
         "# Diagnostics\n\n{}\n\n{}\n\n```\n{ALLOW_EXAMPLE}```\n\n{}\n\n| code | |\n| --- | --- |\n",
         set(
@@ -59,11 +19,10 @@ pub fn page(others: &[Entry]) -> String {
         ),
         set("`obverse check --deny warnings` lets no warning pass that is not allowed."),
     );
-    let entries = || Code::ALL.iter().map(|code| Entry::from(*code)).chain(others.iter().copied());
-    for Entry { code, title, .. } in entries() {
+    for Page { code, title, .. } in pages {
         page += &format!("| [{code}](#{}) | {title} |\n", code.to_lowercase());
     }
-    for Entry { code, title, reason, wrong, right } in entries() {
+    for Page { code, title, reason, wrong, right } in pages {
         let text = format!("**{}.** {reason}", capital(title));
         page += &format!("\n## {code}\n\n{}\n", set(&text));
         for (word, example) in [("Wrong", wrong), ("Right", right)] {
