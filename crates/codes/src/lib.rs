@@ -1,8 +1,8 @@
 //! Codes of what is wrong with a text: a row a code, with the page that explains it.
 //!
 //! [`table!`] makes a type of a table of rows, [`Page`] is what a row says, [`mod@index`] the pages
-//! [`table!`] makes a type of a table of rows, [`Page`] is what a row says, [`mod@index`] the pages of
-//! meaning nor used again. Knows no code, and nothing of how what is wrong is found.
+//! of many codes as one. A code is stable: a row may be reworded, but its code is never given
+//! another meaning nor used again. Knows no code, and nothing of how what is wrong is found.
 
 pub mod index;
 
