@@ -4,7 +4,7 @@
 
 use crate::report::{Lines, columns_of};
 use crate::{story, write};
-use obverse_bytecode::Module;
+use obverse_bytecode::{Module, Places};
 use obverse_preflight::{Grade, Graded, MoveReport, Reason, Report};
 use serde_json::{Map, Value, json};
 
@@ -16,12 +16,12 @@ pub(crate) fn tell(module: &Module, report: &Report) {
     if report.moves.is_empty() {
         return;
     }
-    let mut lines = Lines::new(module);
+    let lines = Lines::new(module);
     let shown: Vec<String> = report.moves.iter().map(|found| lines.shown(found.pc)).collect();
     let width = columns_of(shown.iter().map(String::as_str));
     write::line(&format!("\n{:>width$}  {:<TEXT_COLUMNS$}  grade", "line", "move"));
     for (found, line) in report.moves.iter().zip(&shown) {
-        row(&mut lines, found, &format!("{line:>width$}"));
+        row(&lines, found, &format!("{line:>width$}"));
     }
     write::line("");
     write::line(&counts(report));
@@ -45,7 +45,7 @@ the check was given up: there are too many ways through the program, rounds of a
 to look at all of them; that a move looks fine says nothing";
 
 /// The row of a move, whose line is given at the width of its column.
-fn row(lines: &mut Lines<'_>, found: &MoveReport, line: &str) {
+fn row(lines: &Lines<'_>, found: &MoveReport, line: &str) {
     let (module, width) = (lines.module, line.chars().count());
     let text = story::text_of(module, found.pc, module.code[found.pc as usize]);
     let (forward, reverse) = (found.forward.as_ref(), found.reverse.as_ref());
@@ -86,7 +86,7 @@ fn grade(graded: &Graded) -> String {
 }
 
 /// The line below a row: what was found, and by which calls.
-fn more(lines: &mut Lines<'_>, graded: &Graded, width: usize) {
+fn more(lines: &Lines<'_>, graded: &Graded, width: usize) {
     let verdict = &graded.verdict;
     if verdict.grade() == Grade::Reachable {
         return;
@@ -121,6 +121,7 @@ fn counts(report: &Report) -> String {
 
 /// An object a move.
 pub(crate) fn tell_machines(module: &Module, report: &Report) {
+    let places = Places::new(module);
     for found in &report.moves {
         let verdict = found.verdict();
         let mut object = json!({
@@ -130,10 +131,10 @@ pub(crate) fn tell_machines(module: &Module, report: &Report) {
             "grade": verdict.grade().word(),
             "code": verdict.reason.code(),
             "message": verdict.reason.title(),
-            "forward": found.forward.as_ref().map(|graded| direction(module, graded)),
-            "reverse": found.reverse.as_ref().map(|graded| direction(module, graded)),
+            "forward": found.forward.as_ref().map(|graded| direction(&places, graded)),
+            "reverse": found.reverse.as_ref().map(|graded| direction(&places, graded)),
         });
-        if let Some((file, line, column)) = module.place_of(found.pc) {
+        if let Some((file, line, column)) = places.of(found.pc) {
             object["file"] = json!(file);
             object["line"] = json!(line);
             object["column"] = json!(column);
@@ -142,9 +143,9 @@ pub(crate) fn tell_machines(module: &Module, report: &Report) {
     }
 }
 
-fn direction(module: &Module, graded: &Graded) -> Value {
+fn direction(places: &Places<'_>, graded: &Graded) -> Value {
     let verdict = &graded.verdict;
-    let line = |pc: &u32| module.place_of(*pc).map(|(_, line, _)| line);
+    let line = |pc: &u32| places.of(*pc).map(|(_, line, _)| line);
     json!({
         "grade": verdict.grade().word(),
         "code": verdict.reason.code(),

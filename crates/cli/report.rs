@@ -2,21 +2,21 @@
 
 use crate::problem::Problem;
 use crate::{show, story, write};
-use obverse_bytecode::Module;
+use obverse_bytecode::{Module, Places};
 use obverse_recovery::Ending;
 use obverse_vm::{Direction, Event, Machine, Observer, Trap, TrapKind};
 use obverse_workcell::{MotionEnd, Workcell};
 use serde_json::{Map, Value, json};
-use std::collections::BTreeMap;
 
 /// Tells a run to machines as it happens.
 pub(crate) struct Report<'m> {
     module: &'m Module,
+    places: Places<'m>,
 }
 
 impl<'m> Report<'m> {
     pub(crate) fn new(module: &'m Module) -> Self {
-        Self { module }
+        Self { module, places: Places::new(module) }
     }
 
     pub(crate) fn module(&self) -> &'m Module {
@@ -36,7 +36,7 @@ impl Observer for Report<'_> {
             "calls": event.frames,
             "time_s": cell.now_s(),
         });
-        if let Some((file, line, column)) = self.module.place_of(event.pc) {
+        if let Some((file, line, column)) = self.places.of(event.pc) {
             object["file"] = json!(file);
             object["line"] = json!(line);
             object["column"] = json!(column);
@@ -114,28 +114,25 @@ pub(crate) fn place(module: &Module, pc: Option<u32>) -> Value {
 /// How wide a column of lines of one file is.
 const LINE_COLUMNS: usize = 6;
 
-/// Where instructions were written. Each is looked for once, however often it is asked for.
+/// Where instructions were written, for people.
 pub(crate) struct Lines<'m> {
     pub(crate) module: &'m Module,
-    /// By the first instruction of what was written there.
-    found: BTreeMap<u32, Option<(&'m str, usize)>>,
+    places: Places<'m>,
 }
 
 impl<'m> Lines<'m> {
     pub(crate) fn new(module: &'m Module) -> Self {
-        Self { module, found: BTreeMap::new() }
+        Self { module, places: Places::new(module) }
     }
 
     /// The file and the line, from 1, of an instruction, if they are known.
-    pub(crate) fn of(&mut self, pc: u32) -> Option<(&'m str, usize)> {
-        let first = self.module.source_at(pc)?.first;
-        let look = || self.module.place_of(pc).map(|(file, line, _)| (file, line));
-        *self.found.entry(first).or_insert_with(look)
+    pub(crate) fn of(&self, pc: u32) -> Option<(&'m str, usize)> {
+        self.places.of(pc).map(|(file, line, _)| (file, line))
     }
 
     /// The line of an instruction for people, with its file where there are several; empty if it is
     /// not known.
-    pub(crate) fn shown(&mut self, pc: u32) -> String {
+    pub(crate) fn shown(&self, pc: u32) -> String {
         let is_one = self.module.sources.len() <= 1;
         self.of(pc).map_or_else(String::new, |(file, line)| match is_one {
             true => line.to_string(),

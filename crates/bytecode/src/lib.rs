@@ -1,15 +1,16 @@
 //! Modules: what a compiler writes and a machine runs.
 //!
-//! [`module`] is the data ([`fault`] what it says of faults), [`codec`] its bytes, [`builder`] how
-//! code is put together, [`text`] the assembler and disassembler, [`mod@verify`] what a machine may
-//! rely on, [`code`] the codes of what is wrong. Knows nothing of source languages, tapes or
-//! robots.
+//! [`module`] is the data ([`fault`] what it says of faults, [`places`] where it was written),
+//! [`codec`] its bytes, [`builder`] how code is put together, [`text`] the assembler and
+//! disassembler, [`mod@verify`] what a machine may rely on, [`code`] the codes of what is wrong.
+//! Knows nothing of source languages, tapes or robots.
 
 pub mod builder;
 pub mod code;
 pub mod codec;
 pub mod fault;
 pub mod module;
+pub mod places;
 pub mod text;
 pub mod verify;
 mod wire;
@@ -23,5 +24,6 @@ pub use module::{
     Item, Keyframe, Mention, Mentioned, Module, Otherwise, Pattern, Perturbation, Recovery,
     Respond, Reversal, Severity, SourceEntry, SourceFile, Variable,
 };
+pub use places::Places;
 pub use text::{AsmError, assemble, disassemble};
 pub use verify::{Verified, VerifyError, verify};

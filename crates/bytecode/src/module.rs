@@ -4,6 +4,7 @@
 //! hold of them. Lengths are metres, angles radians, times seconds.
 
 use crate::fault::{Bounds, FaultName};
+use crate::places::Places;
 use obverse_isa::{Instr, Type};
 use serde::{Deserialize, Serialize};
 
@@ -387,32 +388,16 @@ impl Module {
         self.source_map.get(after.checked_sub(1)?)
     }
 
-    /// The line and column, from 1, of an instruction's source, with the file's name.
+    /// The line and column, from 1, of an instruction's source, with the file's name. Reads the
+    /// sources: who asks of many instructions keeps [`Places`].
     #[must_use]
     pub fn place_of(&self, pc: u32) -> Option<(&str, usize, usize)> {
-        let entry = self.source_at(pc)?;
-        self.position(entry.file, entry.start)
+        Places::new(self).of(pc)
     }
 
     /// The line and column, from 1, of where the program speaks of something, with the file's name.
     #[must_use]
     pub fn place_of_mention(&self, mention: &Mention) -> Option<(&str, usize, usize)> {
-        self.position(mention.file, mention.start)
-    }
-
-    fn position(&self, file: u16, start: u32) -> Option<(&str, usize, usize)> {
-        let file = self.sources.get(usize::from(file))?;
-        let before = file.text.get(..start as usize)?;
-        // A line ends with LF, CR LF or CR, as in the sources that diagnostics are of.
-        let text = file.text.as_bytes();
-        let ends_line = |at: usize| match text[at] {
-            b'\n' => true,
-            b'\r' => text.get(at + 1) != Some(&b'\n'),
-            _ => false,
-        };
-        let line = (0..before.len()).filter(|&at| ends_line(at)).count() + 1;
-        let begin = (0..before.len()).rev().find(|&at| ends_line(at)).map_or(0, |at| at + 1);
-        let column = before[begin..].chars().count() + 1;
-        Some((&file.name, line, column))
+        Places::new(self).of_mention(mention)
     }
 }

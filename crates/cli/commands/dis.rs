@@ -29,7 +29,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result {
 }
 
 fn as_json(module: &Module) {
-    let mut lines = Lines::new(module);
+    let lines = Lines::new(module);
     for (pc, instr) in (0_u32..).zip(&module.code) {
         let info = instr.info();
         let mut operands = Map::new();

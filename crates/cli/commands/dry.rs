@@ -5,7 +5,7 @@ use super::{Result, run};
 use crate::cycle::{Cycle, Reading, Times};
 use crate::report::{Lines, columns_of};
 use crate::{Outcome, load, report, story, write};
-use obverse_bytecode::Module;
+use obverse_bytecode::{Module, Places};
 use obverse_isa::Family;
 use obverse_recovery::{Ending, drive};
 use obverse_sim::Sim;
@@ -116,7 +116,7 @@ fn tell(module: &Module, cycle: &Cycle<'_>, ending: &Ending, total_s: f64) {
 
 /// The lines of instructions, and how wide a column of them is.
 fn lines(module: &Module, pcs: impl Iterator<Item = u32>) -> (Vec<String>, usize) {
-    let mut lines = Lines::new(module);
+    let lines = Lines::new(module);
     let shown: Vec<String> = pcs.map(|pc| lines.shown(pc)).collect();
     let width = columns_of(shown.iter().map(String::as_str));
     (shown, width)
@@ -200,8 +200,9 @@ fn in_words(readings: &[Reading]) -> String {
 }
 
 fn tell_machines(module: &Module, cycle: &Cycle<'_>, ending: &Ending, total_s: f64) {
+    let places = Places::new(module);
     let placed = |mut object: Value, pc: u32| {
-        let place = module.place_of(pc);
+        let place = places.of(pc);
         object["file"] = json!(place.map(|(file, _, _)| file));
         object["line"] = json!(place.map(|(_, line, _)| line));
         object

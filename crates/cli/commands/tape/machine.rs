@@ -10,7 +10,7 @@ use serde_json::{Value, json};
 /// Show the newest records, or all where no number is given.
 pub(super) fn show(shown: &Shown<'_>, records: Option<usize>) {
     let (module, entries) = (shown.module, &shown.walk.entries);
-    let mut lines = Lines::new(module);
+    let lines = Lines::new(module);
     let told = records.unwrap_or(entries.len()).min(entries.len());
     for entry in &entries[..told] {
         let object = json!({
@@ -37,7 +37,7 @@ pub(super) fn show(shown: &Shown<'_>, records: Option<usize>) {
         "dropped_bits": shown.file.streams.dropped_bits,
         "back_to": back_to(shown),
         "costs": by_opcode(shown),
-        "by_instruction": by_instruction(shown, &mut lines),
+        "by_instruction": by_instruction(shown, &lines),
         "by_command": by_command(shown),
     });
     write::line(&summary.to_string());
@@ -64,7 +64,7 @@ fn by_opcode(shown: &Shown<'_>) -> Value {
     shown.costs.by_opcode.iter().map(cost).collect()
 }
 
-fn by_instruction(shown: &Shown<'_>, lines: &mut Lines<'_>) -> Value {
+fn by_instruction(shown: &Shown<'_>, lines: &Lines<'_>) -> Value {
     let cost = |(pc, cost): &(u32, Cost)| {
         json!({
             "instruction": pc,

@@ -26,14 +26,14 @@ pub(super) fn show(shown: &Shown<'_>, records: usize) {
 
 fn show_records(shown: &Shown<'_>, records: usize) {
     let (module, entries) = (shown.module, &shown.walk.entries);
-    let mut lines = Lines::new(module);
+    let lines = Lines::new(module);
     let width = lines.width();
     write::line(&format!(
         "\n{:>6}  {:18} {:>width$}  {:40} record, newest first",
         "instr", "opcode", "line", "source"
     ));
     for entry in entries.iter().take(records) {
-        let place = placed(module, &mut lines, entry.pc);
+        let place = placed(module, &lines, entry.pc);
         write::line(&format!("{place} {}", entry.what));
     }
     let hidden = entries.len().saturating_sub(records);
@@ -43,7 +43,7 @@ fn show_records(shown: &Shown<'_>, records: usize) {
 }
 
 /// An instruction, with its opcode, line and source text, in columns.
-fn placed(module: &Module, lines: &mut Lines<'_>, pc: u32) -> String {
+fn placed(module: &Module, lines: &Lines<'_>, pc: u32) -> String {
     let mnemonic = module.code[pc as usize].info().mnemonic;
     let (line, width) = (lines.shown(pc), lines.width());
     format!("{pc:>6}  {mnemonic:18} {line:>width$}  {:40}", said(module, pc))
@@ -60,14 +60,14 @@ fn by_opcode(shown: &Shown<'_>) {
 
 fn by_instruction(shown: &Shown<'_>) {
     let all = &shown.costs.by_instruction;
-    let mut lines = Lines::new(shown.module);
+    let lines = Lines::new(shown.module);
     let width = lines.width();
     write::line(&format!(
         "\n{:>6}  {:18} {:>width$}  {:40} {:>8} {:>10}",
         "instr", "opcode", "line", "source", "records", "bits"
     ));
     for (pc, cost) in all.iter().take(INSTRUCTIONS) {
-        let place = placed(shown.module, &mut lines, *pc);
+        let place = placed(shown.module, &lines, *pc);
         write::line(&format!("{place} {:>8} {:>10}", cost.records, cost.bits));
     }
     let hidden = all.get(INSTRUCTIONS..).unwrap_or_default();
