@@ -408,3 +408,36 @@ fn every_reason_has_a_code_of_its_own_and_a_page() {
         assert_eq!(reason.code().parse(), Ok(*reason));
     }
 }
+
+/// What is left aside by an error is never mixed with what goes well, however many ways there are:
+/// with an error nothing is let go, and nobody comes to the wall.
+#[test]
+fn behind_an_error_nothing_is_met() {
+    let program = "
+        io grip { set 0 high; sleep 0.3 s }
+        io free { set 0 low;  sleep 0.3 s }
+        item part { keyframe above = [0, 0, -100] mm  keyframe at = [0, 0, 0] mm }
+        item spot { keyframe above = [0, 0, -100] mm  keyframe at = [0, 0, 0] mm }
+        error missed { }
+        advanced move feel { distance 40 mm forward in tcp stop if force > 10 N
+                             on failure { return to initial position } }
+        action feel_for(tries: int) {
+          advance feel
+          var n = 1
+          while n < tries and distance < 33 mm { n += 1 }
+          if distance < 33 mm { throw missed }
+        }
+        sequence put {
+          move to part.above
+          move to part.at linearly
+          io grip
+          move to part.above linearly
+          call feel_for(6)
+          io free
+          move 10 mm up in base
+        }
+        sequence main { call put  move to spot.above  move to spot.at linearly }";
+    let found = Found::of(&with_wall(450, -150, 60), program);
+    assert!(found.report.is_complete);
+    assert_eq!(found.report.moves.last().map(|last| last.verdict().reason), Some(Reason::Fine));
+}

@@ -4,7 +4,7 @@
 
 use crate::module::{Mention, Module};
 
-/// The beginnings of all lines of a module's sources, so that a place is found without reading them.
+/// The beginnings of all lines of a module's sources, so that a place is found without a search.
 #[derive(Clone, Debug)]
 pub struct Places<'m> {
     module: &'m Module,

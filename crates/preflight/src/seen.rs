@@ -75,5 +75,5 @@ impl Seen {
 
 /// Whether two states at one place differ in values alone.
 fn is_alike(visit: &Visit, state: &State) -> bool {
-    visit.state.world == state.world && visit.state.is_planned == state.is_planned
+    visit.state.world == state.world
 }

@@ -11,6 +11,9 @@ use obverse_bytecode::Function;
 use obverse_geometry::JointConfiguration;
 use obverse_isa::{ErrorId, Setting};
 
+/// How many pending errors keep states apart. With more, what is known of them may be forgotten.
+const MAX_APART: usize = 2;
+
 /// A value of 64 bits, if it is known.
 pub(crate) type Word = Option<u64>;
 
@@ -131,14 +134,18 @@ impl State {
         self.frames.iter_mut().chain(waiting.flat_map(|task| &mut task.frames))
     }
 
-    /// Where it is, through which calls, in which blocks, and where the tasks wait: only states at
-    /// one place are compared.
+    /// Where it is, through which calls, in which blocks, with which errors pending, whether all
+    /// went as planned, and where the tasks wait: only states at one place are compared, so that
+    /// what an error leaves aside is never mixed with what goes well.
     pub(crate) fn place(&self) -> Vec<usize> {
         let calls = self.frames.iter().map(|frame| frame.return_pc);
         let blocks = self.blocks.iter().map(|block| block.index());
         let mut place: Vec<usize> =
             calls.chain([usize::MAX, self.pc, self.blocks.len()]).chain(blocks).collect();
         self.forks.iter().for_each(|fork| fork.add_place(&mut place));
+        place.push(usize::from(self.is_planned));
+        let pending = self.raised.iter().flatten().take(MAX_APART);
+        place.extend(pending.map(|error| error.index()));
         place
     }
 
@@ -147,7 +154,6 @@ impl State {
         let is_same_world = self.world == other.world || self.world == nothing_known;
         let frames = || self.all_frames().zip(other.all_frames());
         is_same_world
-            && (self.is_planned || !other.is_planned)
             && covers_all(self.globals.iter(), other.globals.iter())
             && covers_all(self.settings.iter(), other.settings.iter())
             && (self.raised.is_none() || self.raised == other.raised)
@@ -194,7 +200,6 @@ impl State {
                 }
             }
         }
-        self.is_planned |= other.is_planned;
         self.is_certain = false;
     }
 
