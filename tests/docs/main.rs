@@ -5,6 +5,7 @@
 //! picture has no line of three dots. How a block is meant, the words behind its fence say: see
 //! `example`, `reader` and `console`.
 
+mod assembly;
 mod console;
 mod example;
 mod grammar;
@@ -36,6 +37,11 @@ fn follow(page: &Page) -> Vec<String> {
             "obv" if is_of_reader(block) => {}
             "obv" => {
                 if let Err(why) = example::check(block, &prelude, &reader) {
+                    note(why);
+                }
+            }
+            "obvasm" => {
+                if let Err(why) = assembly::check(&block.text()) {
                     note(why);
                 }
             }

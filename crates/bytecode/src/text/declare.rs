@@ -77,7 +77,7 @@ struct Reader<'t> {
 }
 
 /// Every directive.
-const DIRECTIVES: &[&str] = &[
+pub const DIRECTIVES: &[&str] = &[
     ".at",
     ".bounds",
     ".cell",

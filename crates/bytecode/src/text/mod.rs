@@ -70,5 +70,6 @@ mod scan;
 mod words;
 
 pub use assemble::assemble;
+pub use declare::DIRECTIVES;
 pub use disassemble::{disassemble, disassemble_function, instruction};
 pub use error::{AsmError, MAX_ERRORS};
