@@ -23,14 +23,14 @@ pub(crate) struct Update {
 impl Update {
     #[inline(always)]
     pub(crate) fn undo(self, values: &mut Values<'_>) {
-        let slots = &mut values.words.slots;
+        let words = &mut *values.words;
         let term = |at: usize| {
             let scale = i64::from(self.scales[at]).cast_unsigned();
-            slots[usize::from(self.slots[at])].wrapping_mul(scale)
+            words.slot(self.slots[at]).wrapping_mul(scale)
         };
         let constant = i64::from(self.constant).cast_unsigned();
         let sum = term(0).wrapping_add(term(1)).wrapping_add(constant);
-        let changed = &mut slots[usize::from(self.changed)];
+        let changed = words.slot_mut(self.changed);
         *changed = changed.wrapping_add(sum);
     }
 }
@@ -82,19 +82,19 @@ impl Updates {
     /// What a slot holds when a statement has been undone where all slots were zero, except one
     /// that was one.
     fn undone(&mut self, statement: &[Instr], changed: u8, one: Option<u8>) -> u64 {
-        self.words.slots.fill(0);
+        *self.words = Words::default();
         if let Some(slot) = one {
-            self.words.slots[usize::from(slot)] = 1;
+            *self.words.slot_mut(slot) = 1;
         }
         undo(statement, &mut self.words);
-        self.words.slots[usize::from(changed)]
+        self.words.slot(changed)
     }
 }
 
 /// Undo an update by running its prefix and then the inverse.
 fn undo(statement: &[Instr], words: &mut Words) {
     let fixed = Fixed { constants: &[], tools: &[], settings: Settings::default(), raised: &[] };
-    let mut values = Values { words, top: 0, depth: 0, globals: &mut [], fixed: &fixed };
+    let mut values = Values { words, top: 0, depth: 0, globals: &mut Vec::new(), fixed: &fixed };
     let effect = statement.len() - 1;
     let ran = hot::evaluate(statement, 0, effect, &mut values);
     debug_assert!(ran.is_ok(), "what is linear does not trap");
@@ -199,7 +199,7 @@ mod tests {
 
     fn is_same(statement: &[Instr], update: Update, seed: u64) -> bool {
         let mut one = Box::<Words>::default();
-        for (at, slot) in one.slots.iter_mut().enumerate() {
+        for (at, slot) in one.parts_mut().0.iter_mut().enumerate() {
             *slot = spread(seed + at as u64);
         }
         let mut other = one.clone();
@@ -207,9 +207,9 @@ mod tests {
         let fixed =
             Fixed { constants: &[], tools: &[], settings: Settings::default(), raised: &[] };
         let mut values =
-            Values { words: &mut other, top: 0, depth: 0, globals: &mut [], fixed: &fixed };
+            Values { words: &mut other, top: 0, depth: 0, globals: &mut Vec::new(), fixed: &fixed };
         update.undo(&mut values);
-        one.slots == other.slots
+        one.parts().0 == other.parts().0
     }
 
     #[test]

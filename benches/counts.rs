@@ -1,0 +1,95 @@
+//! How many machine instructions a run takes without a tape, with one, and in reverse: counted by
+//! callgrind, so that the figures are the same on a busy machine as on a calm one. Fails if one of
+//! the ratios is above its bound.
+//!
+//! `cargo bench -p obverse-benches --bench counts` prints them. The same program is what runs under
+//! callgrind, once for each program and way of running it, which it is told as its arguments.
+
+use obverse_benches::{SOURCES, machine, program, timed};
+use obverse_testkit::Ledger;
+use obverse_vm::{Direction, Machine};
+use std::process::{Command, ExitCode};
+
+/// The most that a run with a tape takes, as a part of the run without.
+const MOST_TAPED: f64 = 1.10;
+/// The most that a run in reverse takes, as a part of the run forward with a tape.
+const MOST_REVERSE: f64 = 0.70;
+
+const WAYS: [&str; 3] = ["plain", "taped", "reverse"];
+
+fn main() -> ExitCode {
+    let arguments: Vec<String> = std::env::args().collect();
+    match arguments.get(1..) {
+        Some([name, way]) if WAYS.contains(&way.as_str()) => {
+            run(name, way);
+            ExitCode::SUCCESS
+        }
+        _ => report(),
+    }
+}
+
+/// One run, of which the part in question is counted.
+fn run(name: &str, way: &str) {
+    let Some((_, source)) = SOURCES.iter().find(|(known, _)| *known == name) else {
+        panic!("no program is named {name}")
+    };
+    let program = program(name, source);
+    let mut cell = Ledger::new(1);
+    let machine = machine(&program, &cell);
+    match way {
+        "plain" => counted(&mut machine.without_tape(), Direction::Forward, &mut cell),
+        "taped" => counted(&mut { machine }, Direction::Forward, &mut cell),
+        _ => {
+            let mut machine = machine;
+            timed(&mut machine, Direction::Forward, &mut cell);
+            counted(&mut machine, Direction::Reverse, &mut cell);
+        }
+    }
+}
+
+/// What is counted: callgrind knows it by its name.
+#[inline(never)]
+fn counted(machine: &mut Machine<'_>, direction: Direction, cell: &mut Ledger) {
+    timed(machine, direction, cell);
+}
+
+/// What callgrind counts of a run, in machine instructions.
+fn count(name: &str, way: &str) -> Result<u64, String> {
+    let own = std::env::current_exe().map_err(|error| format!("no path to run again: {error}"))?;
+    let output = Command::new("valgrind")
+        .args(["--tool=callgrind", "--callgrind-out-file=/dev/null", "--collect-atstart=no"])
+        .arg("--toggle-collect=*counts::counted*")
+        .args([own.as_os_str(), name.as_ref(), way.as_ref()])
+        .output()
+        .map_err(|error| format!("valgrind cannot be run: {error}"))?;
+    let said = String::from_utf8_lossy(&output.stderr);
+    let collected = said.lines().find_map(|line| line.split_once("Collected : "));
+    match collected.map(|(_, number)| number.trim().parse()) {
+        Some(Ok(number)) if output.status.success() && number > 0 => Ok(number),
+        _ => Err(format!("{name}, {way}: callgrind counted nothing:\n{said}")),
+    }
+}
+
+/// Count everything, print a table, and say whether all ratios are within their bounds.
+#[expect(clippy::print_stdout, clippy::print_stderr, reason = "a benchmark reports")]
+fn report() -> ExitCode {
+    println!("program        plain      taped    reverse   taped/plain   reverse/taped");
+    let mut is_within = true;
+    for (name, _) in SOURCES {
+        let counts: Result<Vec<u64>, String> = WAYS.iter().map(|way| count(name, way)).collect();
+        let counts = match counts.as_deref() {
+            Ok(&[plain, taped, reverse]) => [plain, taped, reverse],
+            Ok(_) => unreachable!("a count for each way"),
+            Err(message) => {
+                eprintln!("{message}");
+                return ExitCode::FAILURE;
+            }
+        };
+        let [plain, taped, reverse] = counts;
+        let (recording, reversing) = (taped as f64 / plain as f64, reverse as f64 / taped as f64);
+        println!("{name:8} {plain:11} {taped:10} {reverse:10} {recording:13.3} {reversing:15.3}");
+        is_within &= recording <= MOST_TAPED && reversing <= MOST_REVERSE;
+    }
+    println!("at most {MOST_TAPED:49.3} {MOST_REVERSE:15.3}");
+    if is_within { ExitCode::SUCCESS } else { ExitCode::FAILURE }
+}
