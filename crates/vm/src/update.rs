@@ -5,10 +5,11 @@
 //! variable a linear form of other slots. Which form that is, the machine itself is asked: its own
 //! code undoes the statement where all slots are zero, and where one of them is one.
 
-use crate::class::Always;
-use crate::hot;
-use crate::values::{CounterSlots, Fixed, Settings, Values, Variables, Words};
-use obverse_isa::{Class, CounterId, Family, Instr, OperandKind, for_each_op, op};
+use crate::hot::{self, Exit, Place};
+use crate::reversed::Reversed;
+use crate::values::{CounterSlots, Fixed, Settings, Values, Words};
+use obverse_isa::{Class, CounterId, Family, Instr, OperandKind};
+use obverse_tape::Tape;
 
 /// The undoing of an update: a slot gets `scales[0] * slots[0] + scales[1] * slots[1] + constant`
 /// added, wrapping. What is not read has the scale 0.
@@ -82,7 +83,7 @@ impl Updates {
     /// What a slot holds when a statement has been undone where all slots were zero, except one
     /// that was one.
     fn undone(&mut self, statement: &[Instr], changed: u8, one: Option<u8>) -> u64 {
-        *self.words = Words::default();
+        self.words.parts_mut().0.fill(0);
         if let Some(slot) = one {
             *self.words.slot_mut(slot) = 1;
         }
@@ -91,36 +92,16 @@ impl Updates {
     }
 }
 
-/// Undo an update by running its prefix and then the inverse.
+/// Undo an update as the machine does that has no operation for it: by running its prefix and then
+/// the inverse.
 fn undo(statement: &[Instr], words: &mut Words) {
     let fixed = Fixed { constants: &[], tools: &[], settings: Settings::default(), raised: &[] };
     let mut values = Values { words, top: 0, depth: 0, globals: &mut Vec::new(), fixed: &fixed };
-    let effect = statement.len() - 1;
-    let ran = hot::evaluate(statement, 0, effect, &mut values);
-    debug_assert!(ran.is_ok(), "what is linear does not trap");
-    macro_rules! arm {
-        ($op:expr, variable always) => {{
-            let undone = $op.reverse(&mut Variables(&mut values));
-            debug_assert!(undone.is_ok(), "an update does not trap");
-        }};
-        ($op:expr, $($other:tt)*) => {{
-            let _ = $op;
-        }};
-    }
-    macro_rules! dispatch {
-        ($(
-            $(#[doc = $doc:literal])+
-            $code:literal $ident:ident $mnemonic:literal ($($field:ident: $ty:ty),*)
-            [$($picture:tt)*] $class:ident $(($payload:tt))? $family:ident;
-        )*) => {
-            match statement[effect] {
-                $(Instr::$ident { $($field,)* } => {
-                    arm!(op::$ident { $($field,)* }, $family $class $($payload)?);
-                })*
-            }
-        };
-    }
-    for_each_op!(dispatch);
+    let rows: Vec<_> = statement.iter().map(|instr| Reversed::by_instr(*instr)).collect();
+    let mut place = Place { pc: statement.len(), offset: 0 };
+    let mut tape = Tape::default();
+    let exit = hot::reverse::<true>(statement, &rows, &mut values, &mut place, 0, &mut tape);
+    debug_assert_eq!(exit, Exit::One, "an update of linear forms does not trap");
 }
 
 /// Whether an instruction makes a linear form of linear forms.
