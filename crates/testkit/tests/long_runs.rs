@@ -9,7 +9,7 @@ use obverse_vm::{Direction, Limits, Machine, Stop};
 const SOURCE: &str = "var total = 0
 sequence main {
   var x = 1
-  for i from 1 to 700 {
+  for i from 1 to 900 {
     x = (x * 31 + i) mod 1009
     if x mod 3 == 0 { total += x } else { total = total + x * i }
     for j from 1 to x mod 4 { if j == 2 { x = x + j } }
