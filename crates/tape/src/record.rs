@@ -8,6 +8,9 @@ use obverse_geometry::JointConfiguration;
 
 /// A record: pushed before its instruction acts, popped after it has been reversed.
 pub trait Record: Sized {
+    /// Whether the recorder has room for what of it comes first.
+    fn has_room(recorder: &impl Recorder) -> bool;
+
     /// Push it.
     fn push(&self, recorder: &mut impl Recorder);
 
@@ -23,6 +26,11 @@ pub trait Record: Sized {
 pub struct Bit(pub bool);
 
 impl Record for Bit {
+    #[inline(always)]
+    fn has_room(recorder: &impl Recorder) -> bool {
+        recorder.has_room_for_bit()
+    }
+
     #[inline(always)]
     fn push(&self, recorder: &mut impl Recorder) {
         recorder.bit(self.0);
@@ -44,6 +52,11 @@ pub struct Word(pub u64);
 
 impl Record for Word {
     #[inline(always)]
+    fn has_room(recorder: &impl Recorder) -> bool {
+        recorder.has_room_for_word()
+    }
+
+    #[inline(always)]
     fn push(&self, recorder: &mut impl Recorder) {
         recorder.word(self.0);
     }
@@ -63,6 +76,11 @@ impl Record for Word {
 pub struct Counter(pub [u64; 3]);
 
 impl Record for Counter {
+    #[inline(always)]
+    fn has_room(recorder: &impl Recorder) -> bool {
+        recorder.has_room_for_word()
+    }
+
     #[inline(always)]
     fn push(&self, recorder: &mut impl Recorder) {
         for word in self.0 {
@@ -87,6 +105,11 @@ impl Record for Counter {
 pub struct Joints(pub JointConfiguration);
 
 impl Record for Joints {
+    fn has_room(_: &impl Recorder) -> bool {
+        // Only motions record them, and those may as well wait for memory.
+        true
+    }
+
     fn push(&self, recorder: &mut impl Recorder) {
         recorder.joints(self.0);
     }

@@ -10,34 +10,26 @@ pub const CHUNK: usize = 4096;
 #[derive(Clone, Debug)]
 pub struct Stream<T> {
     /// The chunk that is being filled.
-    chunk: Box<[T; CHUNK]>,
-    /// How many elements of it are in use.
-    top: usize,
-    /// Full chunks, oldest first.
-    full: Vec<Box<[T; CHUNK]>>,
-    /// Chunks for later use: never more than one, unless a barrier freed them.
-    spare: Vec<Box<[T; CHUNK]>>,
+    chunk: Vec<T>,
+    /// Chunks that cannot hold more, oldest first. None is empty.
+    full: Vec<Vec<T>>,
+    /// How many elements are in those.
+    in_full: usize,
+    /// An empty chunk for later use.
+    spare: Option<Vec<T>>,
 }
 
-impl<T: Copy + Default> Default for Stream<T> {
+impl<T> Default for Stream<T> {
     fn default() -> Self {
-        Self { chunk: fresh(), top: 0, full: Vec::new(), spare: Vec::new() }
+        Self { chunk: Vec::new(), full: Vec::new(), in_full: 0, spare: None }
     }
 }
 
-fn fresh<T: Copy + Default>() -> Box<[T; CHUNK]> {
-    let elements = vec![T::default(); CHUNK].into_boxed_slice();
-    match elements.try_into() {
-        Ok(chunk) => chunk,
-        Err(_) => unreachable!("the slice has CHUNK elements"),
-    }
-}
-
-impl<T: Copy + Default> Stream<T> {
+impl<T: Copy> Stream<T> {
     /// How many elements there are.
     #[must_use]
     pub fn len(&self) -> usize {
-        self.full.len() * CHUNK + self.top
+        self.in_full + self.chunk.len()
     }
 
     /// Whether there are none.
@@ -46,45 +38,55 @@ impl<T: Copy + Default> Stream<T> {
         self.len() == 0
     }
 
+    /// Whether an element can be pushed where memory is held already.
+    #[inline(always)]
+    #[must_use]
+    pub fn has_room(&self) -> bool {
+        self.chunk.len() < self.chunk.capacity()
+    }
+
+    /// Make room where there is none.
+    #[cold]
+    #[inline(never)]
+    pub fn make_room(&mut self) {
+        let next = self.spare.take().unwrap_or_else(|| Vec::with_capacity(CHUNK));
+        let filled = std::mem::replace(&mut self.chunk, next);
+        if !filled.is_empty() {
+            self.in_full += filled.len();
+            self.full.push(filled);
+        }
+    }
+
     /// Push an element.
     #[inline(always)]
     pub fn push(&mut self, element: T) {
-        // One check serves as bound and as the end of the chunk.
-        if let Some(place) = self.chunk.get_mut(self.top) {
-            *place = element;
-            self.top += 1;
-        } else {
-            self.push_in_next_chunk(element);
+        // So that the vector never grows.
+        if !self.has_room() {
+            self.make_room();
         }
+        self.chunk.push(element);
     }
 
     /// Pop the newest element.
     #[inline(always)]
     pub fn pop(&mut self) -> Option<T> {
-        if self.top == 0 && !self.previous_chunk() {
-            return None;
+        match self.chunk.pop() {
+            None => self.pop_from_previous_chunk(),
+            element => element,
         }
-        self.top -= 1;
-        self.chunk.get(self.top).copied()
     }
 
     /// The newest element.
     #[must_use]
     pub fn last(&self) -> Option<T> {
-        match self.top {
-            0 => self.full.last().map(|chunk| chunk[CHUNK - 1]),
-            top => Some(self.chunk[top - 1]),
-        }
+        self.chunk.last().or_else(|| self.full.last()?.last()).copied()
     }
 
     /// Drop all but the oldest `length` elements.
     pub fn truncate(&mut self, length: usize) {
         while self.len() > length {
-            let above = self.len() - length;
-            if above <= self.top {
-                self.top -= above;
-            } else {
-                self.top = 0;
+            self.chunk.truncate(length.saturating_sub(self.in_full));
+            if self.chunk.is_empty() {
                 self.previous_chunk();
             }
         }
@@ -92,11 +94,7 @@ impl<T: Copy + Default> Stream<T> {
 
     /// The elements, oldest first.
     pub fn iter(&self) -> impl Iterator<Item = T> + '_ {
-        self.full
-            .iter()
-            .flat_map(|chunk| chunk.iter())
-            .chain(self.chunk[..self.top].iter())
-            .copied()
+        self.full.iter().flatten().chain(&self.chunk).copied()
     }
 
     /// How many chunks are full.
@@ -109,32 +107,30 @@ impl<T: Copy + Default> Stream<T> {
     /// The memory that is held, in bytes, in use or spare.
     #[must_use]
     pub fn held_bytes(&self) -> usize {
-        (self.full.len() + self.spare.len() + 1) * CHUNK * size_of::<T>()
+        let chunks = self.full.iter().chain(&self.spare).chain([&self.chunk]);
+        chunks.map(|chunk| chunk.capacity() * size_of::<T>()).sum()
     }
 
     #[cold]
     #[inline(never)]
-    fn push_in_next_chunk(&mut self, element: T) {
-        let next = self.spare.pop().unwrap_or_else(fresh);
-        self.full.push(std::mem::replace(&mut self.chunk, next));
-        self.chunk[0] = element;
-        self.top = 1;
+    fn pop_from_previous_chunk(&mut self) -> Option<T> {
+        self.previous_chunk();
+        self.chunk.pop()
     }
 
-    #[cold]
-    #[inline(never)]
-    fn previous_chunk(&mut self) -> bool {
-        let Some(previous) = self.full.pop() else { return false };
+    /// Go on in the newest full chunk, if there is one, in place of the empty one.
+    fn previous_chunk(&mut self) {
+        let Some(previous) = self.full.pop() else { return };
+        self.in_full -= previous.len();
         let emptied = std::mem::replace(&mut self.chunk, previous);
-        if self.spare.is_empty() {
-            self.spare.push(emptied);
+        // That of a copy may be smaller.
+        if emptied.capacity() >= CHUNK {
+            self.spare = Some(emptied);
         }
-        self.top = CHUNK;
-        true
     }
 }
 
-impl<T: Copy + Default> FromIterator<T> for Stream<T> {
+impl<T: Copy> FromIterator<T> for Stream<T> {
     fn from_iter<I: IntoIterator<Item = T>>(elements: I) -> Self {
         let mut stream = Self::default();
         for element in elements {
@@ -144,12 +140,15 @@ impl<T: Copy + Default> FromIterator<T> for Stream<T> {
     }
 }
 
-/// A stack of bits, 64 to a word.
+/// Bits of a word, beside the sentinel.
+pub(crate) const WORD_BITS: usize = 63;
+
+/// A stack of bits.
 #[derive(Clone, Debug)]
 pub struct BitStream {
     /// The newest bits below a sentinel: the newest is the lowest, and 1 means none.
     word: u64,
-    /// Full words.
+    /// Words before it, each with its sentinel at the top.
     words: Stream<u64>,
 }
 
@@ -160,14 +159,14 @@ impl Default for BitStream {
 }
 
 impl BitStream {
-    fn filled(&self) -> u32 {
-        63 - self.word.leading_zeros()
+    fn filled(&self) -> usize {
+        filled(self.word)
     }
 
     /// How many bits there are.
     #[must_use]
     pub fn len(&self) -> usize {
-        self.words.len() * 64 + self.filled() as usize
+        self.words.len() * WORD_BITS + self.filled()
     }
 
     /// Whether there are none.
@@ -176,24 +175,35 @@ impl BitStream {
         self.len() == 0
     }
 
+    /// Whether a bit can be pushed where memory is held already.
+    #[inline(always)]
+    #[must_use]
+    pub fn has_room(&self) -> bool {
+        self.word >> WORD_BITS == 0
+    }
+
+    /// Make room where there is none.
+    #[cold]
+    #[inline(never)]
+    pub fn make_room(&mut self) {
+        self.words.push(self.word);
+        self.word = 1;
+    }
+
     /// Push a bit.
     #[inline(always)]
     pub fn push(&mut self, bit: bool) {
-        let is_last = self.word >> 63 == 1;
-        self.word = self.word << 1 | u64::from(bit);
-        if is_last {
-            self.words.push(self.word);
-            self.word = 1;
+        if !self.has_room() {
+            self.make_room();
         }
+        self.word = self.word << 1 | u64::from(bit);
     }
 
     /// Pop the newest bit.
     #[inline(always)]
     pub fn pop(&mut self) -> Option<bool> {
         if self.word == 1 {
-            let word = self.words.pop()?;
-            self.word = word >> 1 | 1 << 63;
-            return Some(word & 1 == 1);
+            self.word = self.words.pop()?;
         }
         let bit = self.word & 1 == 1;
         self.word >>= 1;
@@ -211,9 +221,9 @@ impl BitStream {
     pub fn truncate(&mut self, length: usize) {
         while self.len() > length {
             let above = self.len() - length;
-            let filled = self.filled() as usize;
+            let filled = self.filled();
             if filled == 0 {
-                self.words.truncate(self.words.len().min(length / 64 + 1));
+                self.words.truncate(self.words.len().min(length / WORD_BITS + 1));
                 self.pop();
             } else {
                 self.word >>= filled.min(above);
@@ -223,10 +233,8 @@ impl BitStream {
 
     /// The bits, oldest first.
     pub fn iter(&self) -> impl Iterator<Item = bool> + '_ {
-        let full =
-            self.words.iter().flat_map(|word| (0..64).rev().map(move |at| word >> at & 1 == 1));
-        let newest = (0..self.filled()).rev().map(|at| self.word >> at & 1 == 1);
-        full.chain(newest)
+        let words = self.words.iter().chain([self.word]);
+        words.flat_map(|word| (0..filled(word)).rev().map(move |at| word >> at & 1 == 1))
     }
 
     /// The memory that is held, in bytes.
@@ -241,6 +249,11 @@ impl BitStream {
     pub fn full_chunks(&self) -> usize {
         self.words.full_chunks()
     }
+}
+
+/// How many bits are below the sentinel.
+fn filled(word: u64) -> usize {
+    WORD_BITS - word.leading_zeros() as usize
 }
 
 impl FromIterator<bool> for BitStream {
@@ -284,10 +297,35 @@ mod tests {
     }
 
     #[test]
+    fn what_was_copied_goes_on_like_what_it_was_copied_from() {
+        for length in [0, 1, CHUNK - 1, CHUNK, CHUNK + 1] {
+            let mut stream = (0..length as u64).collect::<Stream<u64>>().clone();
+            (length..3 * CHUNK).for_each(|number| stream.push(number as u64));
+            assert_eq!(stream.len(), 3 * CHUNK);
+            assert!(stream.iter().eq(0..3 * CHUNK as u64), "length {length}");
+            stream.truncate(length / 2);
+            assert!(stream.iter().eq(0..length as u64 / 2), "length {length}");
+        }
+    }
+
+    #[test]
+    fn pushing_where_there_is_room_holds_no_more_memory() {
+        let (mut words, mut bits) = (Stream::default(), BitStream::default());
+        for number in 0..3 * CHUNK as u64 {
+            let (words_held, bits_held) = (words.held_bytes(), bits.held_bytes());
+            let (words_had_room, bits_had_room) = (words.has_room(), bits.has_room());
+            words.push(number);
+            bits.push(number & 1 == 1);
+            assert!(!words_had_room || words.held_bytes() == words_held, "word {number}");
+            assert!(!bits_had_room || bits.held_bytes() == bits_held, "bit {number}");
+        }
+    }
+
+    #[test]
     fn bits_keep_their_order_and_their_length() {
         let bits: Vec<bool> =
             (0_u64..1000).map(|n| n.wrapping_mul(0x9e37_79b9) >> 7 & 1 == 1).collect();
-        for length in [0, 1, 63, 64, 65, 127, 128, 129, 999, 1000] {
+        for length in [0, 1, 62, 63, 64, 125, 126, 127, 999, 1000] {
             let mut stream: BitStream = bits.iter().copied().collect();
             stream.truncate(length);
             assert_eq!(stream.len(), length);

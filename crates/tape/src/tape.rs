@@ -4,7 +4,16 @@ use crate::stream::{BitStream, CHUNK, Stream};
 use obverse_geometry::JointConfiguration;
 
 /// What records are written to: a tape, or nothing at all.
+///
+/// Whoever asks for room before a word or a bit is written, and has it made, keeps what gets memory
+/// out of a loop.
 pub trait Recorder {
+    /// Whether the next bit can be written where memory is held already.
+    fn has_room_for_bit(&self) -> bool;
+    /// Whether the next word can be written where memory is held already.
+    fn has_room_for_word(&self) -> bool;
+    /// See to it that there is room for a bit and for a word.
+    fn make_room(&mut self);
     /// Write a bit.
     fn bit(&mut self, bit: bool);
     /// Write a word.
@@ -22,6 +31,15 @@ pub trait Recorder {
 pub struct NoTape;
 
 impl Recorder for NoTape {
+    #[inline(always)]
+    fn has_room_for_bit(&self) -> bool {
+        true
+    }
+    #[inline(always)]
+    fn has_room_for_word(&self) -> bool {
+        true
+    }
+    fn make_room(&mut self) {}
     #[inline(always)]
     fn bit(&mut self, _: bool) {}
     #[inline(always)]
@@ -81,6 +99,25 @@ impl Default for Tape {
 }
 
 impl Recorder for Tape {
+    #[inline(always)]
+    fn has_room_for_bit(&self) -> bool {
+        self.bits.has_room()
+    }
+
+    #[inline(always)]
+    fn has_room_for_word(&self) -> bool {
+        self.words.has_room()
+    }
+
+    fn make_room(&mut self) {
+        if !self.has_room_for_bit() {
+            self.bits.make_room();
+        }
+        if !self.has_room_for_word() {
+            self.words.make_room();
+        }
+    }
+
     #[inline(always)]
     fn bit(&mut self, bit: bool) {
         self.bits.push(bit);
@@ -266,12 +303,13 @@ pub struct Streams {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::stream::WORD_BITS;
 
     #[test]
     fn a_tape_is_not_full_before_its_room_is_used_up() {
         let mut tape = Tape::with_limit(5 * CHUNK * 8);
         // The next bit needs another chunk, and the next word but one.
-        (0..64 * CHUNK + 63).for_each(|_| tape.bit(true));
+        (0..WORD_BITS * (CHUNK + 1)).for_each(|_| tape.bit(true));
         (1..CHUNK).for_each(|_| tape.word(7));
         let mut asked = 0;
         while !tape.is_full() {

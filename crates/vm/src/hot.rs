@@ -26,6 +26,9 @@ pub(crate) enum Exit {
     Bound,
     /// One step was asked for, and made.
     One,
+    /// The recorder has no room for what the instruction at hand records, and is to get memory: a
+    /// call that came back into the loop would cost it registers.
+    Full,
     /// The statement that holds this instruction was not done.
     Trap(usize, TrapKind),
 }
@@ -103,6 +106,9 @@ macro_rules! forward_arm {
     ($op:expr, $run:ident, variable after_forward $record:ident) => {{
         let op = $op;
         let mut variables = Variables(&mut $run.values);
+        if !record::$record::has_room($run.recorder) {
+            break Exit::Full;
+        }
         let saved: record::$record = op.save(&variables);
         saved.push($run.recorder);
         if let Err(failure) = op.forward(&mut variables, &saved) {
@@ -124,6 +130,9 @@ macro_rules! forward_arm {
         let op = $op;
         let mut variables = Variables(&mut $run.values);
         let mut course = Course { variables: &mut variables, way: Way::Beside };
+        if !record::$record::has_room($run.recorder) {
+            break Exit::Full;
+        }
         let saved: record::$record = op.save(&course);
         saved.push($run.recorder);
         if let Err(failure) = op.forward(&mut course, &saved) {
@@ -170,7 +179,13 @@ impl<R: Recorder> Forward<'_, '_, R> {
         let from = self.place.pc;
         let to = target.index();
         match self.code[to] {
-            Instr::Join { .. } => self.recorder.bit(true),
+            Instr::Join { .. } => {
+                // What leads to such a join has changed nothing so far, and can be run once more.
+                if !self.recorder.has_room_for_bit() {
+                    return Some(Exit::Full);
+                }
+                self.recorder.bit(true);
+            }
             Instr::JoinAssert { .. } => {
                 let values = &mut self.values;
                 if let Some(exit) = check_assertion(self.code, borrow!(values), from, to) {
@@ -218,8 +233,8 @@ pub(crate) fn forward<R: Recorder, const ONE: bool>(
     code: &[Instr],
     values: &mut Values<'_>,
     place: &mut Place,
-    limit: u64,
     recorder: &mut R,
+    limit: u64,
 ) -> Exit {
     let mut run = Forward { code, values: borrow!(values), place: *place, limit, recorder };
     macro_rules! dispatch {
@@ -253,7 +268,7 @@ pub(crate) fn forward<R: Recorder, const ONE: bool>(
     let exit = for_each_op!(dispatch);
     *place = run.place;
     run.values.spill();
-    values.depth = run.values.depth;
+    (values.top, values.depth) = (run.values.top, run.values.depth);
     exit
 }
 

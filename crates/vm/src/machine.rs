@@ -12,7 +12,7 @@ use crate::stop::Stop;
 
 use obverse_bytecode::Verified;
 use obverse_isa::Class;
-use obverse_tape::{NoTape, Tape};
+use obverse_tape::{NoTape, Recorder, Tape};
 use obverse_workcell::Workcell;
 use std::collections::BTreeMap;
 use xxhash_rust::xxh3::Xxh3;
@@ -80,7 +80,7 @@ macro_rules! values {
             None => unreachable!("a machine always has the frame of its start"),
         };
         $crate::values::Values {
-            top: frame.words.operands[usize::from(state.depth.wrapping_sub(1))],
+            top: frame.words.operand(state.depth.wrapping_sub(1)),
             words: &mut frame.words,
             depth: state.depth,
             globals: &mut state.globals,
@@ -236,7 +236,7 @@ impl<'p> Machine<'p> {
         self.count(|machine| match machine.hot_forward::<true>(u64::MAX) {
             Exit::Slow => machine.slow_forward(host),
             Exit::Trap(at, kind) => Err(machine.trapped(at, kind)),
-            Exit::One | Exit::Bound => Ok(()),
+            Exit::One | Exit::Bound | Exit::Full => Ok(()),
         })
     }
 
@@ -255,7 +255,7 @@ impl<'p> Machine<'p> {
             match exit {
                 Exit::Slow => machine.slow_reverse(host),
                 Exit::Trap(at, kind) => Err(machine.trapped(at, kind)),
-                Exit::One | Exit::Bound => Ok(()),
+                Exit::One | Exit::Bound | Exit::Full => Ok(()),
             }
         })?;
         // Out of a compensation the machine stands where it entered it, behind its block.
@@ -311,8 +311,8 @@ impl<'p> Machine<'p> {
             };
             match (exit, now) {
                 (Exit::Trap(at, kind), _) => Err(machine.trapped(at, kind)),
-                (Exit::Bound | Exit::One, Direction::Forward) => machine.check_tape(),
-                (Exit::Bound | Exit::One, Direction::Reverse) => Ok(()),
+                (Exit::Bound | Exit::One | Exit::Full, Direction::Forward) => machine.check_tape(),
+                (Exit::Bound | Exit::One | Exit::Full, Direction::Reverse) => Ok(()),
                 (Exit::Slow, Direction::Forward) => machine.slow_forward(host),
                 (Exit::Slow, Direction::Reverse) => machine.slow_reverse(host),
             }
@@ -346,9 +346,15 @@ impl<'p> Machine<'p> {
                 // Until then it cannot become full, so that the loop need not ask.
                 let room = place.steps().saturating_add(tape.room_words() / MAX_STEP_WORDS);
                 let limit = limit.min(room);
-                hot::forward::<_, ONE>(code, &mut values, &mut place, limit, tape)
+                loop {
+                    let exit = hot::forward::<_, ONE>(code, &mut values, &mut place, tape, limit);
+                    if exit != Exit::Full {
+                        break exit;
+                    }
+                    tape.make_room();
+                }
             }
-            None => hot::forward::<_, ONE>(code, &mut values, &mut place, limit, &mut NoTape),
+            None => hot::forward::<_, ONE>(code, &mut values, &mut place, &mut NoTape, limit),
         };
         let depth = values.depth;
         self.state.depth = depth;

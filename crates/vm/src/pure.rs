@@ -26,14 +26,14 @@ impl Calculator {
         if looks_at_more || !is_fitting {
             return None;
         }
-        self.words.operands[..below.len()].copy_from_slice(below);
+        self.words.parts_mut().1[..below.len()].copy_from_slice(below);
         let fixed =
             Fixed { constants: &[], tools: &[], settings: Settings::default(), raised: &[] };
         let mut values = Values {
             words: &mut self.words,
             top: *top,
             depth: operands.len() as u8,
-            globals: &mut [],
+            globals: &mut Vec::new(),
             fixed: &fixed,
         };
         let done = hot::evaluate(&[instr], 0, 1, &mut values);

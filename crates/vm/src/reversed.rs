@@ -80,6 +80,13 @@ pub(crate) struct Reversed {
     pub(crate) jump: WayBack,
 }
 
+impl Reversed {
+    /// A row that a single step can be made by: what undoes an effect is its instruction.
+    pub(crate) fn by_instr(instr: Instr) -> Self {
+        Self { undo: Undo::Instr(instr), beside: WayBack::START, jump: WayBack::START }
+    }
+}
+
 /// The code as a run in reverse meets it.
 pub(crate) fn reversed(code: &[Instr]) -> Vec<Reversed> {
     let whole = |at, by_jump| {

@@ -127,8 +127,8 @@ impl<'p> Machine<'p> {
         state.depth = snapshot.operands.len() as u8;
         state.frames = snapshot.frames.iter().map(|frame| restore_frame(module, frame)).collect();
         if let Some(innermost) = state.frames.last_mut() {
-            let operands = &mut innermost.words.operands[..snapshot.operands.len()];
-            operands.copy_from_slice(&snapshot.operands);
+            let (_, operands) = innermost.words.parts_mut();
+            operands[..snapshot.operands.len()].copy_from_slice(&snapshot.operands);
         }
         state.globals.clone_from(&snapshot.globals);
         state.settings = snapshot.settings;

@@ -97,23 +97,24 @@ impl Frame {
         let locals = usize::from(function(self).parameters);
         let shared = function(self).counters.min(function(around).counters);
         let counters = 256 - 3 * usize::from(shared)..256;
-        self.words.slots[..locals].copy_from_slice(&around.words.slots[..locals]);
-        self.words.slots[counters.clone()].copy_from_slice(&around.words.slots[counters]);
+        let ((own, _), (others, _)) = (self.words.parts_mut(), around.words.parts());
+        own[..locals].copy_from_slice(&others[..locals]);
+        own[counters.clone()].copy_from_slice(&others[counters]);
         for (own, remembered) in self.positions.iter_mut().zip(&around.positions) {
             *own = *remembered;
         }
     }
 
     /// The words that a function uses: locals, then counters from the top.
-    fn used(function: &Function) -> impl Iterator<Item = usize> + use<> {
+    fn used(function: &Function) -> impl Iterator<Item = u8> + use<> {
         let counters = 3 * usize::from(function.counters);
-        (0..function.locals.len()).chain((0..counters).map(|at| 255 - at))
+        (0..function.locals.len()).chain((0..counters).map(|at| 255 - at)).map(|at| at as u8)
     }
 
     /// What must be saved when the frame dies.
     pub(crate) fn save(&self, function: &Function) -> record::Frame {
         record::Frame {
-            words: Self::used(function).map(|slot| self.words.slots[slot]).collect(),
+            words: Self::used(function).map(|slot| self.words.slot(slot)).collect(),
             joints: self.positions.clone(),
         }
     }
@@ -127,7 +128,7 @@ impl Frame {
     ) -> Self {
         let mut frame = Self::new(index, function, return_pc);
         for (slot, word) in Self::used(function).zip(saved.words) {
-            frame.words.slots[slot] = word;
+            *frame.words.slot_mut(slot) = word;
         }
         frame.positions = saved.joints;
         frame
@@ -142,14 +143,14 @@ impl Frame {
     pub(crate) fn each_word(&self, functions: &[Function], sink: &mut dyn FnMut(u64)) {
         sink(u64::from(self.function) << 32 | u64::from(self.return_pc));
         let function = &functions[usize::from(self.function)];
-        Self::used(function).map(|slot| self.words.slots[slot]).for_each(&mut *sink);
+        Self::used(function).map(|slot| self.words.slot(slot)).for_each(&mut *sink);
         self.positions.iter().flat_map(JointConfiguration::bits).for_each(&mut *sink);
     }
 
     /// A local variable.
     #[must_use]
     pub fn local(&self, index: u8) -> u64 {
-        self.words.slots[usize::from(index)]
+        self.words.slot(index)
     }
 
     /// The positions that it remembers.
@@ -176,7 +177,7 @@ impl State {
     #[must_use]
     pub fn operands(&self) -> &[u64] {
         let frame = self.frames.last();
-        frame.map_or(&[], |frame| &frame.words.operands[..usize::from(self.depth)])
+        frame.map_or(&[], |frame| &frame.words.parts().1[..usize::from(self.depth)])
     }
 
     /// The calls under way, outermost first.

@@ -31,9 +31,10 @@ macro_rules! acts {
             Some(frame) => frame,
             None => unreachable!("a machine always has the frame of its start"),
         };
+        let (slots, operands) = frame.words.parts_mut();
         Acts {
-            operands: &frame.words.operands,
-            slots: &mut frame.words.slots,
+            operands,
+            slots,
             positions: &mut frame.positions,
             settings: &mut state.settings,
             raised: &mut state.raised,
@@ -415,7 +416,8 @@ impl Machine<'_> {
         let declared = &self.program.module().functions[function.index()];
         let mut frame = Frame::new(function.0, declared, at as u32 + 1);
         let parameters = usize::from(declared.parameters);
-        frame.words.slots[..parameters].copy_from_slice(&self.state.operands()[..parameters]);
+        let (slots, _) = frame.words.parts_mut();
+        slots[..parameters].copy_from_slice(&self.state.operands()[..parameters]);
         self.state.frames.push(frame);
         self.state.depth = 0;
         self.state.place.jump_forward(declared.first as usize);

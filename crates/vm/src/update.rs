@@ -5,10 +5,11 @@
 //! variable a linear form of other slots. Which form that is, the machine itself is asked: its own
 //! code undoes the statement where all slots are zero, and where one of them is one.
 
-use crate::class::Always;
-use crate::hot;
-use crate::values::{CounterSlots, Fixed, Settings, Values, Variables, Words};
-use obverse_isa::{Class, CounterId, Family, Instr, OperandKind, for_each_op, op};
+use crate::hot::{self, Exit, Place};
+use crate::reversed::Reversed;
+use crate::values::{CounterSlots, Fixed, Settings, Values, Words};
+use obverse_isa::{Class, CounterId, Family, Instr, OperandKind};
+use obverse_tape::Tape;
 
 /// The undoing of an update: a slot gets `scales[0] * slots[0] + scales[1] * slots[1] + constant`
 /// added, wrapping. What is not read has the scale 0.
@@ -23,14 +24,14 @@ pub(crate) struct Update {
 impl Update {
     #[inline(always)]
     pub(crate) fn undo(self, values: &mut Values<'_>) {
-        let slots = &mut values.words.slots;
+        let words = &mut *values.words;
         let term = |at: usize| {
             let scale = i64::from(self.scales[at]).cast_unsigned();
-            slots[usize::from(self.slots[at])].wrapping_mul(scale)
+            words.slot(self.slots[at]).wrapping_mul(scale)
         };
         let constant = i64::from(self.constant).cast_unsigned();
         let sum = term(0).wrapping_add(term(1)).wrapping_add(constant);
-        let changed = &mut slots[usize::from(self.changed)];
+        let changed = words.slot_mut(self.changed);
         *changed = changed.wrapping_add(sum);
     }
 }
@@ -82,45 +83,25 @@ impl Updates {
     /// What a slot holds when a statement has been undone where all slots were zero, except one
     /// that was one.
     fn undone(&mut self, statement: &[Instr], changed: u8, one: Option<u8>) -> u64 {
-        self.words.slots.fill(0);
+        self.words.parts_mut().0.fill(0);
         if let Some(slot) = one {
-            self.words.slots[usize::from(slot)] = 1;
+            *self.words.slot_mut(slot) = 1;
         }
         undo(statement, &mut self.words);
-        self.words.slots[usize::from(changed)]
+        self.words.slot(changed)
     }
 }
 
-/// Undo an update by running its prefix and then the inverse.
+/// Undo an update as the machine does that has no operation for it: by running its prefix and then
+/// the inverse.
 fn undo(statement: &[Instr], words: &mut Words) {
     let fixed = Fixed { constants: &[], tools: &[], settings: Settings::default(), raised: &[] };
-    let mut values = Values { words, top: 0, depth: 0, globals: &mut [], fixed: &fixed };
-    let effect = statement.len() - 1;
-    let ran = hot::evaluate(statement, 0, effect, &mut values);
-    debug_assert!(ran.is_ok(), "what is linear does not trap");
-    macro_rules! arm {
-        ($op:expr, variable always) => {{
-            let undone = $op.reverse(&mut Variables(&mut values));
-            debug_assert!(undone.is_ok(), "an update does not trap");
-        }};
-        ($op:expr, $($other:tt)*) => {{
-            let _ = $op;
-        }};
-    }
-    macro_rules! dispatch {
-        ($(
-            $(#[doc = $doc:literal])+
-            $code:literal $ident:ident $mnemonic:literal ($($field:ident: $ty:ty),*)
-            [$($picture:tt)*] $class:ident $(($payload:tt))? $family:ident;
-        )*) => {
-            match statement[effect] {
-                $(Instr::$ident { $($field,)* } => {
-                    arm!(op::$ident { $($field,)* }, $family $class $($payload)?);
-                })*
-            }
-        };
-    }
-    for_each_op!(dispatch);
+    let mut values = Values { words, top: 0, depth: 0, globals: &mut Vec::new(), fixed: &fixed };
+    let rows: Vec<_> = statement.iter().map(|instr| Reversed::by_instr(*instr)).collect();
+    let mut place = Place { pc: statement.len(), offset: 0 };
+    let mut tape = Tape::default();
+    let exit = hot::reverse::<true>(statement, &rows, &mut values, &mut place, 0, &mut tape);
+    debug_assert_eq!(exit, Exit::One, "an update of linear forms does not trap");
 }
 
 /// Whether an instruction makes a linear form of linear forms.
@@ -199,7 +180,7 @@ mod tests {
 
     fn is_same(statement: &[Instr], update: Update, seed: u64) -> bool {
         let mut one = Box::<Words>::default();
-        for (at, slot) in one.slots.iter_mut().enumerate() {
+        for (at, slot) in one.parts_mut().0.iter_mut().enumerate() {
             *slot = spread(seed + at as u64);
         }
         let mut other = one.clone();
@@ -207,9 +188,9 @@ mod tests {
         let fixed =
             Fixed { constants: &[], tools: &[], settings: Settings::default(), raised: &[] };
         let mut values =
-            Values { words: &mut other, top: 0, depth: 0, globals: &mut [], fixed: &fixed };
+            Values { words: &mut other, top: 0, depth: 0, globals: &mut Vec::new(), fixed: &fixed };
         update.undo(&mut values);
-        one.slots == other.slots
+        one.parts().0 == other.parts().0
     }
 
     #[test]

@@ -6,20 +6,50 @@
 
 use obverse_isa::{CounterId, ErrorId, GlobalId, LocalId, Setting};
 
-/// The slots of a frame, or the operand stack.
-pub type Slots = [u64; 256];
+/// How many slots a frame has, and how many operands a statement.
+const SLOTS: usize = 256;
 
-/// The words of a call: its slots, and the operands of the statement in hand. Side by side, so that
-/// one address serves both.
+/// The words of a call: its slots, and behind them the operands of the statement in hand. One array,
+/// so that the loops hold one address for both.
 #[derive(Clone, Debug)]
-pub(crate) struct Words {
-    pub(crate) slots: Slots,
-    pub(crate) operands: Slots,
-}
+pub(crate) struct Words([u64; 2 * SLOTS]);
 
 impl Default for Words {
     fn default() -> Self {
-        Self { slots: [0; 256], operands: [0; 256] }
+        Self([0; 2 * SLOTS])
+    }
+}
+
+impl Words {
+    #[inline(always)]
+    pub(crate) fn slot(&self, at: u8) -> u64 {
+        self.0[usize::from(at)]
+    }
+
+    #[inline(always)]
+    pub(crate) fn slot_mut(&mut self, at: u8) -> &mut u64 {
+        &mut self.0[usize::from(at)]
+    }
+
+    /// An operand, counted from the bottom.
+    #[inline(always)]
+    pub(crate) fn operand(&self, at: u8) -> u64 {
+        self.0[SLOTS + usize::from(at)]
+    }
+
+    #[inline(always)]
+    fn operand_mut(&mut self, at: u8) -> &mut u64 {
+        &mut self.0[SLOTS + usize::from(at)]
+    }
+
+    /// The slots and the operands.
+    pub(crate) fn parts(&self) -> (&[u64], &[u64]) {
+        self.0.split_at(SLOTS)
+    }
+
+    /// The slots and the operands.
+    pub(crate) fn parts_mut(&mut self) -> (&mut [u64], &mut [u64]) {
+        self.0.split_at_mut(SLOTS)
     }
 }
 
@@ -48,7 +78,8 @@ pub struct Values<'a> {
     pub(crate) words: &'a mut Words,
     pub(crate) top: u64,
     pub(crate) depth: u8,
-    pub(crate) globals: &'a mut [u64],
+    /// A vector, so that the loops hold one address for it and not a length too.
+    pub(crate) globals: &'a mut Vec<u64>,
     pub(crate) fixed: &'a Fixed<'a>,
 }
 
@@ -70,15 +101,15 @@ impl CounterSlots {
 
 /// Where the operand is that is so far below the top, counted from the empty stack.
 #[inline(always)]
-fn place(depth: u8, below: u8) -> usize {
-    usize::from(depth.wrapping_sub(below))
+fn place(depth: u8, below: u8) -> u8 {
+    depth.wrapping_sub(below)
 }
 
 impl Values<'_> {
     /// Write the newest operand where the others are.
     #[inline(always)]
     pub(crate) fn spill(&mut self) {
-        self.words.operands[place(self.depth, 1)] = self.top;
+        *self.words.operand_mut(place(self.depth, 1)) = self.top;
     }
 
     /// Push a word.
@@ -98,7 +129,7 @@ impl Values<'_> {
     /// Replace the two newest operands, older first, by what is made of them.
     #[inline(always)]
     pub fn binary(&mut self, make: impl FnOnce(u64, u64) -> u64) {
-        let older = self.words.operands[place(self.depth, 2)];
+        let older = self.words.operand(place(self.depth, 2));
         self.depth = self.depth.wrapping_sub(1);
         self.top = make(older, self.top);
     }
@@ -114,7 +145,7 @@ impl Values<'_> {
     #[inline(always)]
     #[must_use]
     pub fn below(&self) -> u64 {
-        self.words.operands[place(self.depth, 2)]
+        self.words.operand(place(self.depth, 2))
     }
 
     /// Push an integer.
@@ -139,7 +170,7 @@ impl Values<'_> {
     #[inline(always)]
     #[must_use]
     pub fn local(&self, local: LocalId) -> u64 {
-        self.words.slots[local.index()]
+        self.words.slot(local.0)
     }
 
     /// A variable of the program.
@@ -153,7 +184,7 @@ impl Values<'_> {
     #[inline(always)]
     #[must_use]
     pub fn counter(&self, counter: CounterId) -> i64 {
-        self.words.slots[usize::from(CounterSlots::of(counter).present)].cast_signed()
+        self.words.slot(CounterSlots::of(counter).present).cast_signed()
     }
 
     /// What a setting is now.
@@ -191,7 +222,7 @@ impl Variables<'_, '_> {
     /// A local variable.
     #[inline(always)]
     pub fn local(&mut self, local: LocalId) -> &mut u64 {
-        &mut self.0.words.slots[local.index()]
+        self.0.words.slot_mut(local.0)
     }
 
     /// A variable of the program.
@@ -203,7 +234,7 @@ impl Variables<'_, '_> {
     /// A slot of the frame.
     #[inline(always)]
     pub(crate) fn slot(&mut self, slot: u8) -> &mut u64 {
-        &mut self.0.words.slots[usize::from(slot)]
+        self.0.words.slot_mut(slot)
     }
 
     /// What is there to be read.

@@ -5,15 +5,15 @@ use crate::alter::Alteration;
 use crate::class::Failure;
 use crate::link::Links;
 use crate::stop::TrapKind;
-use crate::values::{Settings, Slots};
+use crate::values::Settings;
 use obverse_bytecode::Module;
 use obverse_geometry::JointConfiguration;
 use obverse_isa::{ErrorId, LocalId, Setting, SlotId, SpeedId};
 use obverse_workcell::{MotionReport, Speed, ToolId, Workcell};
 
 pub(crate) struct Acts<'a> {
-    pub(crate) operands: &'a Slots,
-    pub(crate) slots: &'a mut Slots,
+    pub(crate) operands: &'a [u64],
+    pub(crate) slots: &'a mut [u64],
     pub(crate) positions: &'a mut [JointConfiguration],
     pub(crate) settings: &'a mut Settings,
     pub(crate) raised: &'a mut Vec<ErrorId>,

@@ -176,9 +176,8 @@ impl AfterForward<Course<'_, '_, '_>> for op::ForEnter {
     #[inline(always)]
     fn save(&self, course: &Course<'_, '_, '_>) -> Counter {
         let slots = CounterSlots::of(self.counter);
-        let values = course.variables.values();
-        let slot = |slot: u8| values.words.slots[usize::from(slot)];
-        Counter([slot(slots.first), slot(slots.last), slot(slots.present)])
+        let words = &course.variables.values().words;
+        Counter([slots.first, slots.last, slots.present].map(|slot| words.slot(slot)))
     }
 
     #[inline(always)]
