@@ -12,7 +12,7 @@ const ROOT: &str = env!("CARGO_MANIFEST_DIR");
 const COMMAND_LINE: &str = "obverse";
 const WORKSHOP: [&str; 2] = ["testkit", "benches"];
 /// The two columns meet in bytecode and nowhere else.
-const LANGUAGE: [&str; 2] = ["syntax", "compiler"];
+const LANGUAGE: [&str; 3] = ["syntax", "compiler", "lsp"];
 const MACHINE: [&str; 7] = ["tape", "workcell", "sim", "vm", "recovery", "preflight", "trials"];
 
 /// The widest line and the longest file of source text.

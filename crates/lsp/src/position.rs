@@ -25,7 +25,7 @@ impl Lines {
 
     /// The place of an offset; beyond the end it is the end, within a letter the letter's.
     pub(crate) fn position(&self, text: &str, offset: u32) -> Position {
-        let end = text.floor_char_boundary(offset as usize);
+        let end = boundary(text, offset as usize);
         let line = self.line_of(offset);
         let begin = (self.starts[line] as usize).min(end);
         let units = text[begin..end].encode_utf16().count();
@@ -69,15 +69,21 @@ impl Lines {
 
     /// The offset at which a line ends, before what ends it.
     pub(crate) fn end_of(&self, text: &str, line: usize) -> u32 {
-        self.starts.get(line).map_or(offset(text.len()), |start| {
-            start + offset(self.line(text, line).len())
-        })
+        self.starts
+            .get(line)
+            .map_or(offset(text.len()), |start| start + offset(self.line(text, line).len()))
     }
 }
 
 /// Texts are at most as long as offsets go.
 fn offset(bytes: usize) -> u32 {
     u32::try_from(bytes).unwrap_or(u32::MAX)
+}
+
+/// The last beginning of a letter that is not behind an offset, or the end.
+pub(crate) fn boundary(text: &str, offset: usize) -> usize {
+    let offset = offset.min(text.len());
+    (0..=offset).rev().find(|at| text.is_char_boundary(*at)).unwrap_or(0)
 }
 
 /// Put a text in the place of a range of another.

@@ -98,6 +98,27 @@ impl Program {
         self.lines.get(file).map(|lines| lines.range(self.text(file), span))
     }
 
+    /// The file that an import in a file leads to.
+    pub(crate) fn imported(&self, file: usize, is_library: bool, path: &str) -> Option<usize> {
+        let sources = self.sources();
+        let name = match is_library {
+            true => format!("{}{path}.obv", library::PREFIX),
+            false => {
+                let mut parts: Vec<&str> = sources.name(file).split('/').collect();
+                parts.pop();
+                for part in path.split('/') {
+                    match part {
+                        "" | "." => {}
+                        ".." => _ = parts.pop(),
+                        _ => parts.push(part),
+                    }
+                }
+                parts.join("/")
+            }
+        };
+        (0..sources.len()).find(|file| sources.name(*file) == name)
+    }
+
     /// What is written at a span.
     pub(crate) fn written(&self, span: Span) -> &str {
         self.sources().whole().get(span.start as usize..span.end as usize).unwrap_or("")

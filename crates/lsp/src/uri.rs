@@ -13,7 +13,8 @@ pub(crate) fn path_of(uri: &Uri) -> Option<String> {
     let path = path.split(['?', '#']).next().unwrap_or(path);
     let path = decoded(path)?;
     // `/c:/folder/file`
-    let is_drive = |bytes: &[u8]| bytes.len() > 2 && bytes[0].is_ascii_alphabetic() && bytes[1] == b':';
+    let is_drive =
+        |bytes: &[u8]| bytes.len() > 2 && bytes[0].is_ascii_alphabetic() && bytes[1] == b':';
     match path.strip_prefix('/').filter(|rest| is_drive(rest.as_bytes())) {
         Some(drive) => Some(drive.to_owned()),
         None => Some(path),
@@ -35,11 +36,6 @@ pub(crate) fn uri_of(path: &str) -> Uri {
         }
     }
     Uri(uri)
-}
-
-/// The same address in the one way of writing that is used here, so that two can be compared.
-pub(crate) fn plain(uri: &Uri) -> Uri {
-    path_of(uri).map_or_else(|| uri.clone(), |path| uri_of(&path))
 }
 
 /// The folder of a path, and the name in it.
@@ -89,7 +85,6 @@ mod tests {
         assert_eq!(path("file:///c%3A/cell/a.obv").as_deref(), Some("c:/cell/a.obv"));
         assert_eq!(uri_of("/home/a b/ä.obv").0, "file:///home/a%20b/%C3%A4.obv");
         assert_eq!(uri_of("c:/a.obv").0, "file:///c%3A/a.obv");
-        assert_eq!(plain(&Uri("file:///a%2Eobv".to_owned())).0, "file:///a.obv");
     }
 
     #[test]
@@ -97,7 +92,6 @@ mod tests {
         for uri in ["untitled:Untitled-1", "file:", "file://", "file:///%", "file:///%FF", ""] {
             assert_eq!(path(uri), None, "{uri}");
         }
-        assert_eq!(plain(&Uri("untitled:a".to_owned())).0, "untitled:a");
     }
 
     #[test]

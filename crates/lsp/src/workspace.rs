@@ -69,6 +69,7 @@ impl Workspace {
     /// A text is closed: what counts is what lies on the disk.
     pub fn close(&mut self, uri: &Uri) {
         self.open.remove(&key_of(uri));
+        self.newest_steps.clear();
         self.forget();
     }
 
@@ -224,7 +225,9 @@ impl Workspace {
             .map(|(root, text)| (root, self.files_of(root, text)))
             .collect();
         let imports = |root: &str, other: &str| {
-            files.iter().any(|(one, of)| one.as_str() == root && of[1..].iter().any(|f| f == other))
+            files.iter().any(|(one, of)| {
+                one.as_str() == root && of.iter().skip(1).any(|file| file == other)
+            })
         };
         let importers: Vec<&String> =
             files.keys().copied().filter(|root| imports(root, key)).collect();

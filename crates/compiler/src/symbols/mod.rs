@@ -153,11 +153,7 @@ pub struct Symbols {
 
 impl Symbols {
     /// Those of a tree of a source, with the types that the check has found for what is declared at a place.
-    pub(crate) fn of(
-        source: &str,
-        program: &Program<'_>,
-        types: Vec<(Span, ValueType)>,
-    ) -> Self {
+    pub(crate) fn of(source: &str, program: &Program<'_>, types: Vec<(Span, ValueType)>) -> Self {
         let types: HashMap<Span, ValueType> = types.into_iter().collect();
         let mut symbols = walk::walk(source, program);
         for symbol in &mut symbols.symbols {

@@ -84,7 +84,9 @@ fn names_of_blocks_are_seen_to_the_end_of_the_block() {
 
 #[test]
 fn a_variable_is_not_seen_in_its_own_first_value() {
-    check_same("sequence main { var x = «x» }".replace("«x»", "1").replace("var x", "var «x»").as_str());
+    check_same(
+        "sequence main { var x = «x» }".replace("«x»", "1").replace("var x", "var «x»").as_str(),
+    );
     let symbols = symbols("sequence main { var x = x }");
     assert_eq!(symbols.occurrences.last().map(|one| one.symbol), Some(None));
 }
@@ -120,18 +122,16 @@ fn checkpoints_are_named_before_they_are_set() {
 
 #[test]
 fn tools_types_and_functions_are_declared_nowhere() {
-    let symbols = symbols("sequence main(x: length) { tool probe var y: length = abs(x) tool probe }");
+    let symbols =
+        symbols("sequence main(x: length) { tool probe var y: length = abs(x) tool probe }");
     let foreign: Vec<(&str, SymbolKind)> = symbols
         .symbols
         .iter()
         .filter(|symbol| symbol.declared.is_empty())
         .map(|symbol| (symbol.name.as_str(), symbol.kind))
         .collect();
-    let expected = [
-        ("length", SymbolKind::Type),
-        ("probe", SymbolKind::Tool),
-        ("abs", SymbolKind::Function),
-    ];
+    let expected =
+        [("length", SymbolKind::Type), ("probe", SymbolKind::Tool), ("abs", SymbolKind::Function)];
     assert_eq!(foreign, expected);
 }
 
@@ -198,7 +198,8 @@ fn every_name_of_every_program_leads_somewhere() {
 
 #[test]
 fn the_table_of_half_a_program_has_what_is_there() {
-    let source = "joints home = [0, 0, 0, 0, 0, 0] deg\nsequence main {\n  move to home\n  move to ";
+    let source =
+        "joints home = [0, 0, 0, 0, 0, 0] deg\nsequence main {\n  move to home\n  move to ";
     let symbols = symbols(source);
     assert!(compile("test.obv", source).module.is_none());
     let home = symbols.at(source.find("home\n  move to ").expect("it is there") as u32);
