@@ -3,8 +3,8 @@
 //! [`compile`] is the way in, and [`compile_files`] for a program of several files, which `load`
 //! gathers and `merge` makes one tree of. Read `types` and `units`, then `check` (syntax tree to
 //! checked tree), `effects` (errors and barriers across calls), `lower` (checked tree to code),
-//! `shortfall` (reversals that cannot be had). [`invert`] makes of a
-//! sequence its inverse, and [`symbols`] says where each name stands. Knows nothing of machines and robots; the parser is
+//! `shortfall` (reversals that cannot be had). [`invert`] makes of a sequence its inverse, and
+//! [`symbols`] says where each name stands. Knows nothing of machines and robots; the parser is
 //! `obverse-syntax`.
 
 mod allow;

@@ -3,7 +3,7 @@
 
 use crate::workspace::{InProgram, Workspace};
 use lsp_types::{CompletionItem, CompletionItemKind, CompletionList, Position, Uri};
-use obverse_compiler::symbols::{Symbol, SymbolKind};
+use obverse_compiler::symbols::{self, Symbol, SymbolKind};
 use obverse_syntax::UNITS;
 use obverse_syntax::codes::Code;
 use obverse_syntax::expected::{Expected, expected_after};
@@ -11,21 +11,6 @@ use obverse_syntax::highlight::{Piece, PieceKind, pieces};
 
 /// The most that is offered.
 const MOST_OFFERED: usize = 200;
-
-/// The names of the types.
-const TYPES: [&str; 10] =
-    ["int", "number", "length", "angle", "time", "force", "speed", "bool", "joints", "item"];
-
-/// The functions of the language, and how each is called.
-const FUNCTIONS: [(&str, &str); 7] = [
-    ("abs", "abs(x)"),
-    ("int", "int(number)"),
-    ("max", "max(a, b)"),
-    ("min", "min(a, b)"),
-    ("random", "random(least, most)"),
-    ("real", "real(int)"),
-    ("sqrt", "sqrt(x)"),
-];
 
 /// What names of a kind are for.
 const VALUES: &[SymbolKind] =
@@ -202,11 +187,11 @@ impl<'w> Writing<'w> {
                 item("0", &label, CompletionItemKind::Property, &of_type)
             }));
         }
-        items.extend(
-            FUNCTIONS
-                .iter()
-                .map(|(name, call)| item("2", name, CompletionItemKind::Function, call)),
-        );
+        let function = |(name, count): (&str, usize)| {
+            let detail = if count == 1 { "of one value" } else { "of two values" };
+            item("2", name, CompletionItemKind::Function, detail)
+        };
+        items.extend(symbols::functions().into_iter().map(function));
         items
     }
 
@@ -267,7 +252,8 @@ impl<'w> Writing<'w> {
 }
 
 fn types() -> Vec<CompletionItem> {
-    TYPES.iter().map(|name| item("0", name, CompletionItemKind::Class, "type")).collect()
+    let types = symbols::types().into_iter();
+    types.map(|name| item("0", name, CompletionItemKind::Class, "type")).collect()
 }
 
 fn warnings() -> Vec<CompletionItem> {

@@ -15,7 +15,7 @@ impl Workspace {
     pub fn hints(&mut self, uri: &Uri, range: Range) -> Vec<InlayHint> {
         let Some(file) = self.file(uri) else { return Vec::new() };
         let program = &file.program;
-        let (Some(steps), Some(lines)) = (&program.steps, program.lines(file.file)) else {
+        let (Some(steps), Some(lines)) = (program.steps(), program.lines(file.file)) else {
             return Vec::new();
         };
         let name = program.sources().name(file.file);
@@ -50,7 +50,7 @@ impl Workspace {
     pub fn lenses(&mut self, uri: &Uri) -> Vec<CodeLens> {
         let Some(file) = self.file(uri) else { return Vec::new() };
         let program = &file.program;
-        let Some(steps) = &program.steps else { return Vec::new() };
+        let Some(steps) = program.steps() else { return Vec::new() };
         let name = program.sources().name(file.file);
         let is_run = |kind| {
             matches!(kind, SymbolKind::Sequence | SymbolKind::Action | SymbolKind::AdvancedMove)

@@ -58,7 +58,7 @@ impl Hovered<'_, '_> {
             text += &format!("```obverse\n{}\n```\n", self.declaration(symbol));
         }
         text += &self.kind(symbol);
-        if let Some(steps) = &self.program().steps
+        if let Some(steps) = self.program().steps()
             && let Some(whole) = steps.function(&symbol.name)
             && is_run(symbol.kind)
         {
@@ -194,7 +194,7 @@ impl Hovered<'_, '_> {
     }
 
     fn step_at(&self, offset: u32) -> Option<(&Steps, &Step)> {
-        let steps = self.program().steps.as_deref()?;
+        let steps = self.program().steps()?;
         let within = offset - self.program().start(self.file.file).min(offset);
         let mut found = steps.of_file(self.name_of_file());
         let (_, step) = found.find(|(span, _)| span.start == within)?;

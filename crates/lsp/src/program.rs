@@ -9,6 +9,7 @@ use obverse_compiler::symbols::Symbols;
 use obverse_compiler::{Compiled, Loader, analyse, library};
 use obverse_syntax::sources::Sources;
 use obverse_syntax::span::Span;
+use std::cell::OnceCell;
 use std::rc::Rc;
 
 /// A program, compiled.
@@ -21,8 +22,10 @@ pub(crate) struct Program {
     pub(crate) symbols: Symbols,
     /// By file.
     lines: Vec<Lines>,
-    /// What is known of going back, from the newest text that compiled; none if none did yet.
-    pub(crate) steps: Option<Rc<Steps>>,
+    /// What is known of going back, once it has been asked for.
+    steps: OnceCell<Option<Steps>>,
+    /// The newest that compiled, if this does not.
+    before: Option<Rc<Self>>,
 }
 
 /// A place of a program: the key of its file, and where in it.
@@ -35,7 +38,30 @@ impl Program {
         let (compiled, symbols) = analyse(name, text, loader);
         let sources = &compiled.sources;
         let lines = (0..sources.len()).map(|file| Lines::new(sources.text(file))).collect();
-        Self { folder: folder.to_owned(), compiled, symbols, lines, steps: None }
+        Self {
+            folder: folder.to_owned(),
+            compiled,
+            symbols,
+            lines,
+            steps: OnceCell::new(),
+            before: None,
+        }
+    }
+
+    /// The same after another one, of which what is known of going back is kept as far as the text
+    /// is the same.
+    pub(crate) fn after(self, before: Option<Rc<Self>>) -> Self {
+        Self { before: before.filter(|_| self.compiled.module.is_none()), ..self }
+    }
+
+    /// What is known of going back, from the newest text that compiled; none if none did yet.
+    pub(crate) fn steps(&self) -> Option<&Steps> {
+        let steps = || match (&self.compiled.module, &self.before) {
+            (Some(module), _) => Some(Steps::of(module)),
+            (None, Some(before)) => Some(before.steps()?.carried_to(self.sources())),
+            (None, None) => None,
+        };
+        self.steps.get_or_init(steps).as_ref()
     }
 
     /// All files.

@@ -3,7 +3,6 @@
 
 use crate::disk::{Disk, NoDisk, OpenFirst};
 use crate::program::Program;
-use crate::steps::Steps;
 use crate::uri::{LIBRARY_SCHEME, path_of, split, uri_of};
 use lsp_types::{TextDocumentContentChangeEvent, Uri};
 use obverse_compiler::{Loader, library};
@@ -33,8 +32,8 @@ pub struct Workspace {
     open: BTreeMap<String, Document>,
     /// By the key of the file that a program begins in.
     programs: HashMap<String, Rc<Program>>,
-    /// By the same: what was known of the newest text that compiled.
-    newest_steps: HashMap<String, Rc<Steps>>,
+    /// By the same: the newest that compiled.
+    newest: HashMap<String, Rc<Program>>,
     /// The files that programs begin in which a file is part of.
     roots: HashMap<String, Vec<String>>,
 }
@@ -55,7 +54,7 @@ impl Workspace {
             disk,
             open: BTreeMap::new(),
             programs: HashMap::new(),
-            newest_steps: HashMap::new(),
+            newest: HashMap::new(),
             roots: HashMap::new(),
         }
     }
@@ -69,7 +68,7 @@ impl Workspace {
     /// A text is closed: what counts is what lies on the disk.
     pub fn close(&mut self, uri: &Uri) {
         self.open.remove(&key_of(uri));
-        self.newest_steps.clear();
+        self.newest.clear();
         self.forget();
     }
 
@@ -154,16 +153,11 @@ impl Workspace {
         if let Some(known) = self.programs.get(root) {
             return Some(Rc::clone(known));
         }
-        let mut program = self.compiled(root, None)?;
-        let steps = match &program.compiled.module {
-            Some(module) => Some(Steps::of(module)),
-            None => self.newest_steps.get(root).map(|steps| steps.carried_to(program.sources())),
-        };
-        program.steps = steps.map(Rc::new);
-        if let (Some(steps), Some(_)) = (&program.steps, &program.compiled.module) {
-            self.newest_steps.insert(root.to_owned(), Rc::clone(steps));
-        }
+        let program = self.compiled(root, None)?.after(self.newest.get(root).cloned());
         let program = Rc::new(program);
+        if program.compiled.module.is_some() {
+            self.newest.insert(root.to_owned(), Rc::clone(&program));
+        }
         self.programs.insert(root.to_owned(), Rc::clone(&program));
         Some(program)
     }

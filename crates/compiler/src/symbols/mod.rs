@@ -10,7 +10,8 @@ mod body;
 mod scopes;
 mod walk;
 
-use crate::types::ValueType;
+use crate::check::FUNCTIONS;
+use crate::types::{TYPE_NAMES, ValueType};
 use obverse_syntax::ast::Program;
 use obverse_syntax::span::Span;
 use std::collections::HashMap;
@@ -120,6 +121,18 @@ pub struct Symbol {
     pub of_type: Option<String>,
 }
 
+/// The names of the types of the language.
+#[must_use]
+pub fn types() -> Vec<&'static str> {
+    TYPE_NAMES.iter().map(|(name, _)| *name).collect()
+}
+
+/// The names of the functions of the language, and how many arguments each takes.
+#[must_use]
+pub fn functions() -> Vec<(&'static str, usize)> {
+    FUNCTIONS.to_vec()
+}
+
 /// What is done with a name where it stands.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Role {
@@ -152,7 +165,8 @@ pub struct Symbols {
 }
 
 impl Symbols {
-    /// Those of a tree of a source, with the types that the check has found for what is declared at a place.
+    /// Those of a tree of a source, with the types that the check has found for what is declared at
+    /// a place.
     pub(crate) fn of(source: &str, program: &Program<'_>, types: Vec<(Span, ValueType)>) -> Self {
         let types: HashMap<Span, ValueType> = types.into_iter().collect();
         let mut symbols = walk::walk(source, program);

@@ -21,7 +21,8 @@ pub(super) struct Walk<'s> {
     pub(super) parent: Option<SymbolId>,
 }
 
-/// All names of a tree of a source. Recurses no deeper than blocks and expressions are in one another.
+/// All names of a tree of a source. Recurses no deeper than blocks and expressions are in one
+/// another.
 pub(super) fn walk<'s>(source: &'s str, program: &Program<'s>) -> Symbols {
     let scopes = Scopes::default();
     let mut walk = Walk { source, scopes, parameters: HashMap::new(), parent: None };

@@ -138,7 +138,9 @@ fn tools_types_and_functions_are_declared_nowhere() {
 #[test]
 fn values_have_the_type_that_the_check_finds() {
     let source = "joints a = [0, 0, 0, 0, 0, 0] deg var rounds = 3
-                  sequence main(gap: length) { var v = gap / 2 s var at = a for i from 1 to 2 { } }";
+                  sequence main(gap: length) {
+                    var v = gap / 2 s var at = a for i from 1 to 2 { }
+                  }";
     let symbols = symbols(source);
     let of_type = |name: &str| {
         let symbol = symbols.symbols.iter().find(|symbol| symbol.name == name);
