@@ -8,7 +8,7 @@
 use arbitrary::{Result, Unstructured};
 use obverse_testkit::{
     always_laws, files, format_laws, front_laws, invert_laws, laws, machine_laws, preflight_laws,
-    reach_laws, recovery_laws, wait_laws, word_laws,
+    reach_laws, recovery_laws, symbol_laws, wait_laws, word_laws,
 };
 use std::collections::BTreeSet;
 
@@ -116,6 +116,7 @@ laws! {
     laws: compiles >= 100 agrees_forward >= 95 agrees_backward >= 75;
     always_laws: always_leads_where_the_arm_was >= 15;
     files: files_are_one_program >= 60;
+    symbol_laws: renames >= 95;
     word_laws:
         words_restore_the_program >= 50
         skipped_blocks_command_nothing >= 30

@@ -12,7 +12,7 @@ const ROOT: &str = env!("CARGO_MANIFEST_DIR");
 const COMMAND_LINE: &str = "obverse";
 const WORKSHOP: [&str; 2] = ["testkit", "benches"];
 /// The two columns meet in bytecode and nowhere else.
-const LANGUAGE: [&str; 2] = ["syntax", "compiler"];
+const LANGUAGE: [&str; 3] = ["syntax", "compiler", "lsp"];
 const MACHINE: [&str; 7] = ["tape", "workcell", "sim", "vm", "recovery", "preflight", "trials"];
 
 /// The widest line and the longest file of source text.
@@ -141,7 +141,8 @@ fn every_dependency_is_used() {
             .map(|file| read(file))
             .collect();
         for dependency in &package.dependencies {
-            if !text.contains(&dependency.name.replace('-', "_")) {
+            let name = dependency.rename.as_ref().unwrap_or(&dependency.name);
+            if !text.contains(&name.replace('-', "_")) {
                 findings.push(format!("{} never names {}", package.name, dependency.name));
             }
         }
@@ -164,7 +165,7 @@ fn files() -> Vec<PathBuf> {
         let entries = std::fs::read_dir(folder).expect("the project can be read");
         for entry in entries {
             let path = entry.expect("the project can be read").path();
-            let is_ours = !path.ends_with(".git") && !path.ends_with("target");
+            let is_ours = !["target", ".git", "node_modules"].iter().any(|one| path.ends_with(one));
             match path.is_dir() {
                 true if is_ours => walk(&path, files),
                 false => files.push(path),

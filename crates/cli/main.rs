@@ -7,6 +7,7 @@
 mod commands;
 mod cycle;
 mod files;
+mod framing;
 mod lacking;
 mod load;
 mod moves;
@@ -63,6 +64,8 @@ enum Command {
     Trials(commands::trials::Arguments),
     /// Learn the parameters of an action in simulation.
     Learn(commands::learn::Arguments),
+    /// Serve an editor: the language server on standard input and output.
+    Lsp(commands::lsp::Arguments),
     /// Show what is on a recorded tape.
     Tape(commands::tape::Arguments),
     /// Show the instruction set.
@@ -86,7 +89,7 @@ impl Command {
             Self::Learn(arguments) => arguments.json,
             Self::Tape(arguments) => arguments.json,
             Self::Explain(arguments) => arguments.json,
-            Self::Check(_) | Self::Isa(_) => false,
+            Self::Check(_) | Self::Isa(_) | Self::Lsp(_) => false,
         }
     }
 }
@@ -116,6 +119,7 @@ fn main() -> ExitCode {
         Command::Dis(arguments) => commands::dis::run(&arguments),
         Command::Trials(arguments) => commands::trials::run(&arguments),
         Command::Learn(arguments) => commands::learn::run(&arguments),
+        Command::Lsp(arguments) => commands::lsp::run(&arguments),
         Command::Tape(arguments) => commands::tape::run(&arguments),
         Command::Isa(arguments) => commands::isa::run(&arguments),
         Command::Explain(arguments) => commands::explain::run(&arguments),

@@ -6,6 +6,7 @@ mod fmt;
 mod imports;
 mod invert;
 mod learn;
+mod lsp;
 mod moves;
 mod reach;
 mod support;

@@ -10,6 +10,7 @@ pub(crate) mod fmt;
 pub(crate) mod invert;
 pub(crate) mod isa;
 pub(crate) mod learn;
+pub(crate) mod lsp;
 pub(crate) mod reach;
 pub(crate) mod run;
 pub(crate) mod tape;

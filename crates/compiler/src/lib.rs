@@ -3,8 +3,8 @@
 //! [`compile`] is the way in, and [`compile_files`] for a program of several files, which `load`
 //! gathers and `merge` makes one tree of. Read `types` and `units`, then `check` (syntax tree to
 //! checked tree), `effects` (errors and barriers across calls), `lower` (checked tree to code),
-//! `shortfall` (reversals that cannot be had). [`invert`] makes of a
-//! sequence its inverse. Knows nothing of machines and robots; the parser is
+//! `shortfall` (reversals that cannot be had). [`invert`] makes of a sequence its inverse, and
+//! [`symbols`] says where each name stands. Knows nothing of machines and robots; the parser is
 //! `obverse-syntax`.
 
 mod allow;
@@ -27,6 +27,7 @@ mod report;
 mod response;
 mod reversal;
 mod shortfall;
+pub mod symbols;
 mod tree;
 mod types;
 mod units;
@@ -40,10 +41,14 @@ use check::Checked;
 use effects::Effects;
 use load::Loaded;
 use obverse_bytecode::Module;
+use obverse_syntax::Parsed;
 use obverse_syntax::ast::Program;
 use obverse_syntax::diagnostic::Diagnostic;
 use obverse_syntax::sources::Sources;
+use obverse_syntax::span::Span;
 use report::Reports;
+use symbols::Symbols;
+use types::ValueType;
 
 pub use invert::{Inverse, NoInverse, OtherKind, invert, invert_files};
 
@@ -82,8 +87,25 @@ pub fn compile_with(
     defaults: &Defaults,
 ) -> Compiled {
     let loaded = load::load(name, source, loader);
-    let Built { module, actions, diagnostics } = compile_loaded(&loaded, defaults);
+    let Built { module, actions, diagnostics, .. } = compile_loaded(&loaded, defaults);
     Compiled { module, diagnostics, actions, sources: loaded.sources }
+}
+
+/// The same as [`compile_files`], with the names of the program, also of one that has mistakes.
+pub fn analyse(name: &str, source: &str, loader: &mut dyn Loader) -> (Compiled, Symbols) {
+    let loaded = load::load(name, source, loader);
+    let parsed = merge::parse(&loaded);
+    let Built { module, actions, diagnostics, types } =
+        compile_parsed(&loaded.sources, &parsed, &Defaults::new());
+    let symbols = Symbols::of(loaded.sources.whole(), &parsed.program, types);
+    (Compiled { module, diagnostics, actions, sources: loaded.sources }, symbols)
+}
+
+/// The names of the files that a program is of, the one that was asked for first. Nothing is
+/// compiled; what cannot be imported is left out.
+pub fn files(name: &str, source: &str, loader: &mut dyn Loader) -> Vec<String> {
+    let sources = load::load(name, source, loader).sources;
+    (0..sources.len()).map(|file| sources.name(file).to_owned()).collect()
 }
 
 /// What became of the files of a program.
@@ -91,6 +113,15 @@ struct Built {
     module: Option<Module>,
     actions: Vec<Action>,
     diagnostics: Vec<Diagnostic>,
+    types: Vec<(Span, ValueType)>,
+}
+
+/// What became of a tree.
+struct Lowered {
+    module: Option<Module>,
+    actions: Vec<Action>,
+    reports: Reports,
+    types: Vec<(Span, ValueType)>,
 }
 
 /// The module of a syntax tree whose places are those of the sources.
@@ -99,8 +130,8 @@ fn compile_tree(
     program: &Program<'_>,
     defaults: &Defaults,
     reports: Reports,
-) -> (Option<Module>, Vec<Action>, Reports) {
-    let Checked { program, actions, mut reports } =
+) -> Lowered {
+    let Checked { program, actions, types, mut reports } =
         check::check(sources, program, defaults, reports);
     let module = program.filter(|_| reports.is_whole()).and_then(|program| {
         let effects = Effects::of(&program);
@@ -112,20 +143,23 @@ fn compile_tree(
             false => lower::lower(program, sources, &effects, &mut reports),
         }
     });
-    (module, actions, reports)
+    Lowered { module, actions, reports, types }
 }
 
 fn compile_loaded(loaded: &Loaded, defaults: &Defaults) -> Built {
-    let sources = &loaded.sources;
-    let parsed = merge::parse(loaded);
-    let reports = Reports::new(parsed.left_out, Allows::of(sources, &parsed.program));
-    let (module, actions, mut reports) = compile_tree(sources, &parsed.program, defaults, reports);
+    compile_parsed(&loaded.sources, &merge::parse(loaded), defaults)
+}
+
+fn compile_parsed(sources: &Sources, parsed: &Parsed<'_>, defaults: &Defaults) -> Built {
+    let reports = Reports::new(parsed.left_out.clone(), Allows::of(sources, &parsed.program));
+    let Lowered { module, actions, mut reports, types } =
+        compile_tree(sources, &parsed.program, defaults, reports);
     if let Some(module) = &module {
         shortfall::check(sources, &parsed.program, module, &mut reports);
     }
     reports.warn_of_useless();
-    let mut diagnostics = parsed.diagnostics;
+    let mut diagnostics = parsed.diagnostics.clone();
     diagnostics.extend(reports.into_diagnostics());
     diagnostics.sort_by_key(|diagnostic| diagnostic.primary.span);
-    Built { module, actions, diagnostics }
+    Built { module, actions, diagnostics, types }
 }

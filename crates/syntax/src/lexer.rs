@@ -21,6 +21,8 @@ pub(crate) struct Lexer<'s, 'k> {
     source: &'s str,
     /// Where the text begins in the source.
     start: usize,
+    /// Whether the text ends with [`Token::END`], and blocks that are open there stay so.
+    is_unended: bool,
     tokens: logos::Lexer<'s, Token>,
     sink: &'k Sink<'s>,
     nesting: Nesting,
@@ -49,6 +51,7 @@ impl<'s, 'k> Lexer<'s, 'k> {
         Self {
             source,
             start,
+            is_unended: false,
             tokens,
             sink,
             nesting,
@@ -61,6 +64,11 @@ impl<'s, 'k> Lexer<'s, 'k> {
             has_stray_word: false,
             clauses: None,
         }
+    }
+
+    /// The same of a text that somebody is writing: it ends where it ends, within its blocks.
+    pub(crate) fn unended(source: &'s str, sink: &'k Sink<'s>) -> Self {
+        Self { is_unended: true, ..Self::new(source, 0, sink) }
     }
 
     /// The next token as the grammar knows it; none where what was read is left out.
@@ -489,12 +497,16 @@ impl<'s, 'k> Lexer<'s, 'k> {
     }
 
     /// The text has ended: a brace for each that is still open, so that what was read in the block
-    /// is kept. Reported once.
+    /// is kept. Reported once. Of an unended text, its end.
     fn missing_brace(&mut self) -> Option<(u32, Token, u32)> {
+        let end = self.source.len() as u32;
+        if self.is_unended {
+            let is_told = std::mem::replace(&mut self.has_ended, true);
+            return (!is_told).then_some((end, Token::END, end));
+        }
         if !self.nesting.close_block() {
             return None;
         }
-        let end = self.source.len() as u32;
         if !std::mem::replace(&mut self.has_ended, true)
             && let Some(diagnostic) = Surroundings::new(self.source, self.start).unclosed_at(end)
         {

@@ -47,6 +47,8 @@ pub(crate) struct Sink<'s> {
     diagnostics: RefCell<Vec<Diagnostic>>,
     syntax_errors: RefCell<Vec<SyntaxError>>,
     misplaced: RefCell<Vec<Item<'s>>>,
+    /// What the grammar allows at the end of an unended text.
+    at_end: RefCell<Vec<String>>,
     given_up: RefCell<Vec<Span>>,
     /// The end of what has been read whole last.
     settled: Cell<u32>,
@@ -142,6 +144,9 @@ impl<'s> Sink<'s> {
     pub(crate) fn unexpected(&self, error: Failure, end: u32) {
         let (span, found, expected) = match error {
             ParseError::UnrecognizedToken { token: (start, token, end), expected } => {
+                if token == Token::END {
+                    self.at_end.replace(expected.clone());
+                }
                 (Span::new(start, end), Some(token), expected)
             }
             ParseError::UnrecognizedEof { location, expected } => {
@@ -250,6 +255,11 @@ impl<'s> Sink<'s> {
     /// Whether reading ends, since enough mistakes have been found.
     pub(crate) fn is_full(&self) -> bool {
         self.count.get() >= MAX_MISTAKES || self.recoveries.get() >= MAX_RECOVERIES
+    }
+
+    /// What the grammar allows at the end of the text, as lalrpop names it.
+    pub(crate) fn into_expected_at_end(self) -> Vec<String> {
+        self.at_end.into_inner()
     }
 
     /// All that was found.

@@ -128,6 +128,10 @@ tokens! {
 }
 
 impl Token {
+    /// The end of a text that is being written. The grammar has no such token, so that it says what
+    /// it allows there; the lexer gives it nowhere else.
+    pub(crate) const END: Self = Self::UnclosedText;
+
     /// Whether it is a word: a name, or a word of the language.
     pub(crate) fn is_word(self) -> bool {
         matches!(self, Self::Name | Self::Assigned) || self.is_reserved() || self.is_free()

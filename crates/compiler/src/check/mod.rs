@@ -43,6 +43,7 @@ use parameters::Range;
 use std::collections::{BTreeSet, HashMap};
 use still::Movers;
 
+pub(crate) use operators::FUNCTIONS;
 pub(crate) use program::{Checked, check};
 
 /// More names than these are not listed where none of them is near the one that is written.

@@ -77,6 +77,16 @@ impl Meaning {
         }
     }
 
+    /// The type of its values, if it has a value.
+    fn of_type(self) -> Option<ValueType> {
+        match self {
+            Self::Global(_, of_type) | Self::Local(_, of_type) => Some(of_type),
+            Self::Counter(_) | Self::CountDown(_) => Some(ValueType::Int),
+            Self::Joints(_) | Self::Position(_) => Some(ValueType::Joints),
+            _ => None,
+        }
+    }
+
     /// Whether it is declared at the top of a file.
     pub(crate) fn is_declared(self) -> bool {
         !self.is_of_frame()
@@ -224,6 +234,12 @@ impl<'s> Names<'s> {
     /// Every name ever declared, in the order of declaration.
     pub(crate) fn all(&self) -> &[Symbol<'s>] {
         &self.symbols
+    }
+
+    /// Of which type the values are that have a name, by where the name is given.
+    pub(crate) fn types(&self) -> Vec<(Span, ValueType)> {
+        let typed = |symbol: &Symbol<'s>| Some((symbol.name.span, symbol.meaning.of_type()?));
+        self.symbols.iter().filter_map(typed).collect()
     }
 
     /// The names that can be seen here and whose meaning is wanted.

@@ -14,7 +14,7 @@ use obverse_syntax::diagnostic::Diagnostic;
 use obverse_syntax::span::Span;
 
 /// The functions of expressions and how many arguments each takes.
-const FUNCTIONS: [(&str, usize); 7] =
+pub(crate) const FUNCTIONS: [(&str, usize); 7] =
     [("abs", 1), ("min", 2), ("max", 2), ("sqrt", 1), ("int", 1), ("real", 1), ("random", 2)];
 
 /// An instruction on integers and its like on reals.

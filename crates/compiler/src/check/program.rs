@@ -28,6 +28,8 @@ pub(crate) struct Checked {
     pub(crate) program: Option<tree::Program>,
     /// The actions with their parameters.
     pub(crate) actions: Vec<Action>,
+    /// Of which type values are that have a name, by where the name is given.
+    pub(crate) types: Vec<(Span, ValueType)>,
     /// What is wrong.
     pub(crate) reports: Reports,
 }
@@ -47,6 +49,7 @@ pub(crate) fn check<'s>(
     checker.check_checkpoints();
     let unnamed = checker.warn_of_unused(main);
     let actions = checker.actions(program);
+    let types = checker.names.types();
     let flow = std::mem::take(&mut checker.keyframes);
     flow.check(&checker.module, &mut checker.reports);
     let Checker { reports, functions, module, first_values, named_faults, .. } = checker;
@@ -62,7 +65,7 @@ pub(crate) fn check<'s>(
         }
         _ => None,
     };
-    Checked { program, actions, reports }
+    Checked { program, actions, types, reports }
 }
 
 /// How many functions a module has at the most; replacements and the start are among them.

@@ -27,7 +27,7 @@ mod walk;
 use crate::allow::{self, Allows};
 use crate::load::{self, Loaded, Loader};
 use crate::report::Reports;
-use crate::{Built, Defaults, compile, compile_loaded, compile_tree, merge};
+use crate::{Built, Defaults, Lowered, compile, compile_loaded, compile_tree, merge};
 use checked::Checked;
 use obverse_syntax::ast::{Item, Program};
 use obverse_syntax::diagnostic::{Diagnostic, Severity};
@@ -148,7 +148,7 @@ fn name_of<'s>(item: &Item<'s>) -> Option<&'s str> {
 /// stand where those stand that they are the inverses of, and so does what is wrong with them.
 fn does_not_compile(sources: &Sources, inverse: &Program<'_>, name: &str) -> Vec<Diagnostic> {
     let reports = Reports::new(None, Allows::default());
-    let (_, _, reports) = compile_tree(sources, inverse, &Defaults::new(), reports);
+    let Lowered { reports, .. } = compile_tree(sources, inverse, &Defaults::new(), reports);
     let found = reports.into_diagnostics().into_iter();
     let errors = found.filter(|found| found.severity == Severity::Error);
     let refused = |found: Diagnostic| {

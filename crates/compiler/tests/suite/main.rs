@@ -23,4 +23,5 @@ mod reversal_mistakes;
 mod reversal_words;
 mod shortfalls;
 mod statements;
+mod symbols;
 mod turns;

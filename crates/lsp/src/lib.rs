@@ -1,0 +1,30 @@
+//! The language for editors: what stands where, what it means, how far it can be taken back.
+//!
+//! [`Workspace`] holds what is open and answers questions about it, data in and data out; [`serve`]
+//! speaks the Language Server Protocol over a connection. Read `workspace` and `program`, then
+//! `steps` (what is known of going back), then a module a question: `diagnostics`, `hover` with
+//! `backwards`, `navigate`, `rename`, `completion`, `tokens`, `hints`. Files are read by whoever
+//! gives a [`Disk`]. Nothing here runs a program, prints, or knows a machine.
+
+mod backwards;
+mod completion;
+mod diagnostics;
+mod disk;
+mod hints;
+mod hover;
+mod navigate;
+mod position;
+mod program;
+mod rename;
+mod server;
+mod steps;
+mod tokens;
+mod uri;
+mod workspace;
+
+pub use disk::{Disk, NoDisk};
+pub use rename::Refusal;
+pub use server::{Ended, serve};
+pub use tokens::legend;
+pub use uri::LIBRARY_SCHEME;
+pub use workspace::Workspace;
