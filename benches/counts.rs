@@ -2,8 +2,8 @@
 //! callgrind, so that the figures are the same on a busy machine as on a calm one. Fails if one of
 //! the ratios is above its bound; without valgrind it counts nothing, and says so.
 //!
-//! `cargo bench -p obverse-benches --bench counts` prints them. It runs itself under callgrind, once
-//! for each program and way of running it, which it is told as its arguments.
+//! `cargo bench -p obverse-benches --bench counts` prints them. It runs itself under callgrind,
+//! once for each program and way of running it, which it is told as its arguments.
 
 use obverse_benches::{SOURCES, machine, program, timed};
 use obverse_testkit::Ledger;

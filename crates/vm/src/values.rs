@@ -9,8 +9,8 @@ use obverse_isa::{CounterId, ErrorId, GlobalId, LocalId, Setting};
 /// How many slots a frame has, and how many operands a statement.
 const SLOTS: usize = 256;
 
-/// The words of a call: its slots, and behind them the operands of the statement in hand. One array,
-/// so that the loops hold one address for both.
+/// The words of a call: its slots, and behind them the operands of the statement in hand. One
+/// array, so that the loops hold one address for both.
 #[derive(Clone, Debug)]
 pub(crate) struct Words([u64; 2 * SLOTS]);
 
