@@ -1,20 +1,24 @@
 //! Stacks in chunks of a fixed size that are kept and used again.
 //!
 //! Growing never moves what is there, and memory that has been touched once is used again after a
-//! reversal or a barrier: fresh pages cost more than the records in them.
+//! reversal or a barrier: fresh pages cost more than the records in them. Copies of a stream have
+//! their full chunks in common, so that one may be kept at every place of a long run.
+
+use std::sync::Arc;
 
 /// Elements of a chunk.
 pub const CHUNK: usize = 4096;
 
 /// A stack of elements.
-#[derive(Clone, Debug)]
+#[derive(Debug)]
 pub struct Stream<T> {
     /// The chunk that is being filled.
     chunk: Box<[T; CHUNK]>,
     /// How many elements of it are in use.
     top: usize,
-    /// Full chunks, oldest first.
-    full: Vec<Box<[T; CHUNK]>>,
+    /// Full chunks, oldest first. Nothing is written to one while a copy has it too.
+    #[expect(clippy::redundant_allocation, reason = "a chunk is filled in a box and never moved")]
+    full: Vec<Arc<Box<[T; CHUNK]>>>,
     /// Chunks for later use: never more than one, unless a barrier freed them.
     spare: Vec<Box<[T; CHUNK]>>,
 }
@@ -22,6 +26,14 @@ pub struct Stream<T> {
 impl<T: Copy + Default> Default for Stream<T> {
     fn default() -> Self {
         Self { chunk: fresh(), top: 0, full: Vec::new(), spare: Vec::new() }
+    }
+}
+
+impl<T: Copy + Default> Clone for Stream<T> {
+    fn clone(&self) -> Self {
+        let mut chunk = fresh();
+        chunk[..self.top].copy_from_slice(&self.chunk[..self.top]);
+        Self { chunk, top: self.top, full: self.full.clone(), spare: Vec::new() }
     }
 }
 
@@ -94,7 +106,7 @@ impl<T: Copy + Default> Stream<T> {
     pub fn iter(&self) -> impl Iterator<Item = T> + '_ {
         self.full
             .iter()
-            .flat_map(|chunk| chunk.iter())
+            .flat_map(|chunk| chunk.as_slice())
             .chain(self.chunk[..self.top].iter())
             .copied()
     }
@@ -116,7 +128,7 @@ impl<T: Copy + Default> Stream<T> {
     #[inline(never)]
     fn push_in_next_chunk(&mut self, element: T) {
         let next = self.spare.pop().unwrap_or_else(fresh);
-        self.full.push(std::mem::replace(&mut self.chunk, next));
+        self.full.push(Arc::new(std::mem::replace(&mut self.chunk, next)));
         self.chunk[0] = element;
         self.top = 1;
     }
@@ -125,6 +137,7 @@ impl<T: Copy + Default> Stream<T> {
     #[inline(never)]
     fn previous_chunk(&mut self) -> bool {
         let Some(previous) = self.full.pop() else { return false };
+        let previous = Arc::try_unwrap(previous).unwrap_or_else(|shared| (*shared).clone());
         let emptied = std::mem::replace(&mut self.chunk, previous);
         if self.spare.is_empty() {
             self.spare.push(emptied);
@@ -281,6 +294,17 @@ mod tests {
             stream.push(7);
             assert_eq!(stream.pop(), Some(7));
         }
+    }
+
+    #[test]
+    fn a_copy_stays_as_it_was() {
+        let numbers = 0..3 * CHUNK as u64 + 7;
+        let mut stream: Stream<u64> = numbers.clone().collect();
+        let copy = stream.clone();
+        stream.truncate(CHUNK / 2);
+        (0..3 * CHUNK).for_each(|_| stream.push(u64::MAX));
+        assert!(copy.iter().eq(numbers));
+        assert_eq!(stream.iter().filter(|number| *number == u64::MAX).count(), 3 * CHUNK);
     }
 
     #[test]

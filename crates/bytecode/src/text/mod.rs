@@ -72,3 +72,4 @@ mod words;
 pub use assemble::assemble;
 pub use disassemble::{disassemble, disassemble_function, instruction};
 pub use error::{AsmError, MAX_ERRORS};
+pub use nearest::nearest;
