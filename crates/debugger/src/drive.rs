@@ -38,8 +38,10 @@ pub fn drive(
 ) -> Driven {
     let before = machine.executed();
     let was_pending = machine.state().pending().is_some();
-    // What was begun and not finished is a moment of its own, however far is gone after it.
-    let pace = if was_pending { Pace::Step } else { pace };
+    // What was begun and not finished is a moment of its own, however far is gone after it; and a
+    // statement that traps leads back to its beginning, which may lie before this.
+    let is_within = order == Order::Forward && !machine.state().operands().is_empty();
+    let pace = if was_pending || is_within { Pace::Step } else { pace };
     let stop = match order {
         Order::Forward => go(machine, Direction::Forward, pace, cell, observer),
         Order::Reverse => go(machine, Direction::Reverse, pace, cell, observer),

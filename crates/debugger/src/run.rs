@@ -12,7 +12,7 @@ use crate::replay::{Cursor, Replay};
 use crate::rewound::Rewound;
 use crate::timeline::{Checkpoint, Timeline};
 use obverse_bytecode::Verified;
-use obverse_vm::{LinkError, Machine, Observer};
+use obverse_vm::{LinkError, Machine, Observer, Stop};
 use obverse_workcell::{Fault, Workcell};
 use std::collections::BTreeMap;
 
@@ -27,8 +27,9 @@ pub struct Run<'p, C> {
     senses: Senses,
     copies: Option<Copies<C>>,
     forced: BTreeMap<u16, bool>,
-    /// How many commands there were when the machine was last driven.
-    driven_frames: usize,
+    /// How many commands there were when the machine was last driven, if the same order goes on
+    /// from there: a trap leads back to the beginning of its statement, and ends what was ordered.
+    goes_on_at: Option<usize>,
     /// Where going back ends since a variable was changed by hand, in steps of the program.
     changed_at: Option<u64>,
 }
@@ -62,7 +63,7 @@ impl<'p, C: Workcell> Run<'p, C> {
             senses: Senses::default(),
             copies: None,
             forced: BTreeMap::new(),
-            driven_frames: 0,
+            goes_on_at: Some(0),
             changed_at: None,
         }
     }
@@ -160,7 +161,7 @@ impl<'p, C: Workcell> Run<'p, C> {
         observer: &mut dyn Observer,
     ) -> Option<Driven> {
         let cell = self.cell.as_mut()?;
-        begin(&mut self.recording, order, self.driven_frames);
+        begin(&mut self.recording, order, self.goes_on_at);
         let until_due = self.timeline.until_due(self.recording.end).unwrap_or(1);
         let pace = match pace {
             Pace::Step => Pace::Step,
@@ -173,7 +174,8 @@ impl<'p, C: Workcell> Run<'p, C> {
         let mut noting = Noting { notes: &mut self.notes, offset, observer };
         let driven = drive(&mut self.machine, order, pace, &mut recorder, &mut noting);
         drop(recorder);
-        self.driven_frames = self.recording.log.frames.len();
+        let is_trapped = matches!(driven.stop, Some(Stop::Trap(_)));
+        self.goes_on_at = (!is_trapped).then_some(self.recording.log.frames.len());
         self.recording.end = self.recording.end.after(driven.ticks);
         if matches!(order, Order::SetGlobal(..) | Order::SetLocal(..)) {
             self.changed_at = Some(self.machine.state().steps());
@@ -219,13 +221,13 @@ impl<'p, C: Workcell + Clone> Run<'p, C> {
     }
 }
 
-/// An order is given at the end of a recording, after so many commands had been given when the
-/// machine was last driven. It goes on with the last one, unless something was commanded meanwhile.
-fn begin(recording: &mut Recording, order: Order, driven_frames: usize) {
+/// An order is given at the end of a recording. It goes on with the last one where that can go on,
+/// after so many commands, unless something was commanded meanwhile.
+fn begin(recording: &mut Recording, order: Order, goes_on_at: Option<usize>) {
     let frames = recording.log.frames.len();
     let is_way = matches!(order, Order::Forward | Order::Reverse | Order::Unwind);
     let is_last = recording.stretches.last().is_some_and(|last| last.order == order);
-    if !(is_way && is_last && driven_frames == frames) {
+    if !(is_way && is_last && goes_on_at == Some(frames)) {
         let begin = recording.end;
         recording.stretches.push(Stretch { order, begin, frame: frames as u64 });
     }
@@ -278,7 +280,7 @@ impl<'p, C: Workcell> Run<'p, C> {
             notes: self.notes.iter().filter(|note| note.moment < at.moment()).copied().collect(),
             senses: Senses::at(at.cursor()),
             forced: self.forced.clone(),
-            driven_frames: frame,
+            goes_on_at: Some(frame),
             changed_at: self.changed_at.filter(|steps| *steps <= at.machine().state().steps()),
             recording,
         })

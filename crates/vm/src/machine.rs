@@ -308,8 +308,27 @@ impl<'p> Machine<'p> {
         host: &mut Host<'_>,
     ) -> Outcome {
         let now = self.direction_of(direction);
-        let steps = self.state.steps();
         let floor = if self.state.compensations.is_empty() { floor } else { 0 };
+        self.net_of_traps(|machine| machine.loop_and_step((now, left, floor), host))
+    }
+
+    /// Count nothing twice of a statement that trapped and was gone back over: what is counted is
+    /// how far it led.
+    pub(crate) fn net_of_traps(&mut self, run: impl FnOnce(&mut Self) -> Outcome) -> Outcome {
+        let (executed, steps) = (self.executed, self.state.steps());
+        let outcome = run(self);
+        if let Err(Stop::Trap(_)) = outcome {
+            self.executed = executed.saturating_add(self.state.steps().abs_diff(steps));
+        }
+        outcome
+    }
+
+    fn loop_and_step(
+        &mut self,
+        (now, left, floor): (Direction, u64, u64),
+        host: &mut Host<'_>,
+    ) -> Outcome {
+        let steps = self.state.steps();
         let code = &self.program.module().code;
         // What the loop ran and the step behind it are counted one by one: they may lead opposite
         // ways.
@@ -323,7 +342,7 @@ impl<'p> Machine<'p> {
             }
         });
         match (exit, now) {
-            (Exit::Trap(at, kind), _) => self.count(|machine| Err(machine.trapped(at, kind))),
+            (Exit::Trap(at, kind), _) => Err(self.trapped(at, kind)),
             (Exit::Bound | Exit::One, Direction::Forward) => self.check_tape(),
             (Exit::Bound | Exit::One, Direction::Reverse) => Ok(()),
             (Exit::Slow, Direction::Forward) => {

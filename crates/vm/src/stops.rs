@@ -91,7 +91,8 @@ impl Machine<'_> {
             let left = allowed - self.executed;
             let is_plain = self.state.pending.is_none() && !self.state.is_compensating();
             let outcome = if is_begun && is_plain {
-                self.burst_to(stops, left, &mut Host { cell, observer })
+                let mut host = Host { cell, observer };
+                self.net_of_traps(|machine| machine.burst_to(stops, left, &mut host))
             } else {
                 self.step(Direction::Forward, cell, observer)
             };
@@ -113,7 +114,7 @@ impl Machine<'_> {
             return Ok(());
         }
         match exit {
-            Exit::Trap(at, kind) => self.count(|machine| Err(machine.trapped(at, kind))),
+            Exit::Trap(at, kind) => Err(self.trapped(at, kind)),
             Exit::Bound | Exit::One => self.check_tape(),
             Exit::Slow => self.count_step(|machine| machine.slow_forward(host)),
         }
