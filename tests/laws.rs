@@ -7,8 +7,8 @@
 
 use arbitrary::{Result, Unstructured};
 use obverse_testkit::{
-    always_laws, files, format_laws, front_laws, invert_laws, laws, machine_laws, preflight_laws,
-    reach_laws, recovery_laws, symbol_laws, wait_laws, word_laws,
+    always_laws, debug_laws, files, format_laws, front_laws, invert_laws, laws, machine_laws,
+    preflight_laws, reach_laws, recovery_laws, symbol_laws, wait_laws, word_laws,
 };
 use std::collections::BTreeSet;
 
@@ -109,6 +109,7 @@ laws! {
         barrier >= 25
         blocks >= 100
         write_ahead_with_blocks >= 60;
+    debug_laws: shows_what_was >= 80 moves_lead_where_they_say >= 50;
     wait_laws: waits_are_waited >= 10;
     recovery_laws: goes_back_along_the_trail >= 60 recovers_within_bounds >= 5;
     preflight_laws: foretells >= 60 foretells_of_modules >= 10;

@@ -33,6 +33,7 @@ pub(crate) fn raise(
             instr: *instr,
             report: None,
             steps: state.steps(),
+            executed: machine.executed().saturating_sub(1),
             open_blocks: state.open_blocks(),
             frames: state.frames().len(),
             branches: state.branches(),

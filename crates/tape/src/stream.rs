@@ -1,18 +1,22 @@
 //! Stacks in chunks of a fixed size that are kept and used again.
 //!
 //! Growing never moves what is there, and memory that has been touched once is used again after a
-//! reversal or a barrier: fresh pages cost more than the records in them.
+//! reversal or a barrier: fresh pages cost more than the records in them. Copies of a stream have
+//! their full chunks in common, so that one may be kept at every place of a long run.
+
+use std::sync::Arc;
 
 /// Elements of a chunk.
 pub const CHUNK: usize = 4096;
 
 /// A stack of elements.
-#[derive(Clone, Debug)]
+#[derive(Debug)]
 pub struct Stream<T> {
     /// The chunk that is being filled.
     chunk: Vec<T>,
-    /// Chunks that cannot hold more, oldest first. None is empty.
-    full: Vec<Vec<T>>,
+    /// Chunks that cannot hold more, oldest first. None is empty, and nothing is written to one
+    /// while a copy has it too.
+    full: Vec<Arc<Vec<T>>>,
     /// How many elements are in those.
     in_full: usize,
     /// An empty chunk for later use.
@@ -22,6 +26,13 @@ pub struct Stream<T> {
 impl<T> Default for Stream<T> {
     fn default() -> Self {
         Self { chunk: Vec::new(), full: Vec::new(), in_full: 0, spare: None }
+    }
+}
+
+impl<T: Clone> Clone for Stream<T> {
+    fn clone(&self) -> Self {
+        let Self { chunk, full, in_full, spare: _ } = self;
+        Self { chunk: chunk.clone(), full: full.clone(), in_full: *in_full, spare: None }
     }
 }
 
@@ -53,7 +64,7 @@ impl<T: Copy> Stream<T> {
         let filled = std::mem::replace(&mut self.chunk, next);
         if !filled.is_empty() {
             self.in_full += filled.len();
-            self.full.push(filled);
+            self.full.push(Arc::new(filled));
         }
     }
 
@@ -94,7 +105,7 @@ impl<T: Copy> Stream<T> {
 
     /// The elements, oldest first.
     pub fn iter(&self) -> impl Iterator<Item = T> + '_ {
-        self.full.iter().flatten().chain(&self.chunk).copied()
+        self.full.iter().flat_map(|chunk| chunk.iter()).chain(&self.chunk).copied()
     }
 
     /// How many chunks are full.
@@ -107,7 +118,8 @@ impl<T: Copy> Stream<T> {
     /// The memory that is held, in bytes, in use or spare.
     #[must_use]
     pub fn held_bytes(&self) -> usize {
-        let chunks = self.full.iter().chain(&self.spare).chain([&self.chunk]);
+        let full = self.full.iter().map(|chunk| &**chunk);
+        let chunks = full.chain(&self.spare).chain([&self.chunk]);
         chunks.map(|chunk| chunk.capacity() * size_of::<T>()).sum()
     }
 
@@ -122,6 +134,7 @@ impl<T: Copy> Stream<T> {
     fn previous_chunk(&mut self) {
         let Some(previous) = self.full.pop() else { return };
         self.in_full -= previous.len();
+        let previous = Arc::try_unwrap(previous).unwrap_or_else(|shared| (*shared).clone());
         let emptied = std::mem::replace(&mut self.chunk, previous);
         // That of a copy may be smaller.
         if emptied.capacity() >= CHUNK {
@@ -319,6 +332,17 @@ mod tests {
             assert!(!words_had_room || words.held_bytes() == words_held, "word {number}");
             assert!(!bits_had_room || bits.held_bytes() == bits_held, "bit {number}");
         }
+    }
+
+    #[test]
+    fn a_copy_stays_as_it_was() {
+        let numbers = 0..3 * CHUNK as u64 + 7;
+        let mut stream: Stream<u64> = numbers.clone().collect();
+        let copy = stream.clone();
+        stream.truncate(CHUNK / 2);
+        (0..3 * CHUNK).for_each(|_| stream.push(u64::MAX));
+        assert!(copy.iter().eq(numbers));
+        assert_eq!(stream.iter().filter(|number| *number == u64::MAX).count(), 3 * CHUNK);
     }
 
     #[test]

@@ -11,7 +11,7 @@ use crate::step::{Host, Outcome};
 use crate::stop::Stop;
 
 use obverse_bytecode::Verified;
-use obverse_isa::Class;
+use obverse_isa::{Class, Instr};
 use obverse_tape::{NoTape, Recorder, Tape};
 use obverse_workcell::Workcell;
 use std::collections::BTreeMap;
@@ -231,9 +231,10 @@ impl<'p> Machine<'p> {
 
     fn step_forward(&mut self, host: &mut Host<'_>) -> Outcome {
         if self.state.pending.is_some() {
-            return self.count(|machine| machine.slow_forward(host));
+            return self.count_step(|machine| machine.slow_forward(host));
         }
-        self.count(|machine| match machine.hot_forward::<true>(u64::MAX) {
+        let code = &self.program.module().code;
+        self.count_step(|machine| match machine.hot_forward::<true>(code, u64::MAX) {
             Exit::Slow => machine.slow_forward(host),
             Exit::Trap(at, kind) => Err(machine.trapped(at, kind)),
             Exit::One | Exit::Bound | Exit::Full => Ok(()),
@@ -242,25 +243,35 @@ impl<'p> Machine<'p> {
 
     fn step_reverse(&mut self, host: &mut Host<'_>) -> Outcome {
         if self.state.depth > 0 && self.state.pending.is_none() {
-            let before = self.state.place.pc - 1;
-            self.state.place.pc = before;
-            return self.load_operands_up_to(before);
+            return self.count_step(Self::operand_back);
         }
         let compensations = self.state.compensations.len();
-        self.count(|machine| {
-            let exit = match machine.state.pending {
-                Some(_) => Exit::Slow,
-                None => machine.hot_reverse::<true>(0),
-            };
-            match exit {
-                Exit::Slow => machine.slow_reverse(host),
-                Exit::Trap(at, kind) => Err(machine.trapped(at, kind)),
-                Exit::One | Exit::Bound | Exit::Full => Ok(()),
-            }
-        })?;
-        // Out of a compensation the machine stands where it entered it, behind its block.
-        let is_back_out = self.state.compensations.len() < compensations;
-        if is_back_out { Ok(()) } else { self.show_operands() }
+        self.count_step(|machine| {
+            machine.statement_back(host)?;
+            // Into what replaces a reversal it goes forward, and out of it the machine stands where
+            // it entered, behind its block.
+            let is_same = machine.state.compensations.len() == compensations;
+            if is_same { machine.show_operands() } else { Ok(()) }
+        })
+    }
+
+    /// Within a prefix, one instruction back.
+    fn operand_back(&mut self) -> Outcome {
+        let before = self.state.place.pc - 1;
+        self.state.place.pc = before;
+        self.load_operands_up_to(before)
+    }
+
+    fn statement_back(&mut self, host: &mut Host<'_>) -> Outcome {
+        let exit = match self.state.pending {
+            Some(_) => Exit::Slow,
+            None => self.hot_reverse::<true>(0),
+        };
+        match exit {
+            Exit::Slow => self.slow_reverse(host),
+            Exit::Trap(at, kind) => Err(self.trapped(at, kind)),
+            Exit::One | Exit::Bound | Exit::Full => Ok(()),
+        }
     }
 
     /// Between statements, going back by instructions: run the prefix, to stand before the effect.
@@ -297,29 +308,53 @@ impl<'p> Machine<'p> {
         host: &mut Host<'_>,
     ) -> Outcome {
         let now = self.direction_of(direction);
-        let steps = self.state.steps();
         let floor = if self.state.compensations.is_empty() { floor } else { 0 };
-        self.count(|machine| {
-            let exit = match (machine.state.pending, now) {
-                (Some(_), _) => Exit::Slow,
-                (None, Direction::Forward) => {
-                    machine.hot_forward::<false>(steps.saturating_add(left))
-                }
-                (None, Direction::Reverse) => {
-                    machine.hot_reverse::<false>(floor.max(steps.saturating_sub(left)))
-                }
-            };
-            match (exit, now) {
-                (Exit::Trap(at, kind), _) => Err(machine.trapped(at, kind)),
-                (Exit::Bound | Exit::One | Exit::Full, Direction::Forward) => machine.check_tape(),
-                (Exit::Bound | Exit::One | Exit::Full, Direction::Reverse) => Ok(()),
-                (Exit::Slow, Direction::Forward) => machine.slow_forward(host),
-                (Exit::Slow, Direction::Reverse) => machine.slow_reverse(host),
-            }
-        })
+        self.net_of_traps(|machine| machine.loop_and_step((now, left, floor), host))
     }
 
-    fn check_tape(&self) -> Outcome {
+    /// Count nothing twice of a statement that trapped and was gone back over: what is counted is
+    /// how far it led.
+    pub(crate) fn net_of_traps(&mut self, run: impl FnOnce(&mut Self) -> Outcome) -> Outcome {
+        let (executed, steps) = (self.executed, self.state.steps());
+        let outcome = run(self);
+        if let Err(Stop::Trap(_)) = outcome {
+            self.executed = executed.saturating_add(self.state.steps().abs_diff(steps));
+        }
+        outcome
+    }
+
+    fn loop_and_step(
+        &mut self,
+        (now, left, floor): (Direction, u64, u64),
+        host: &mut Host<'_>,
+    ) -> Outcome {
+        let steps = self.state.steps();
+        let code = &self.program.module().code;
+        // What the loop ran and the step behind it are counted one by one: they may lead opposite
+        // ways.
+        let exit = self.count(|machine| match (machine.state.pending, now) {
+            (Some(_), _) => Exit::Slow,
+            (None, Direction::Forward) => {
+                machine.hot_forward::<false>(code, steps.saturating_add(left))
+            }
+            (None, Direction::Reverse) => {
+                machine.hot_reverse::<false>(floor.max(steps.saturating_sub(left)))
+            }
+        });
+        match (exit, now) {
+            (Exit::Trap(at, kind), _) => Err(self.trapped(at, kind)),
+            (Exit::Bound | Exit::One | Exit::Full, Direction::Forward) => self.check_tape(),
+            (Exit::Bound | Exit::One | Exit::Full, Direction::Reverse) => Ok(()),
+            (Exit::Slow, Direction::Forward) => {
+                self.count_step(|machine| machine.slow_forward(host))
+            }
+            (Exit::Slow, Direction::Reverse) => {
+                self.count_step(|machine| machine.slow_reverse(host))
+            }
+        }
+    }
+
+    pub(crate) fn check_tape(&self) -> Outcome {
         use crate::stop::{Trap, TrapKind};
         match &self.tape {
             Some(tape) if tape.is_full() => {
@@ -330,15 +365,25 @@ impl<'p> Machine<'p> {
     }
 
     /// Count the instructions that something runs, in either direction.
-    fn count(&mut self, run: impl FnOnce(&mut Self) -> Outcome) -> Outcome {
+    pub(crate) fn count<T>(&mut self, run: impl FnOnce(&mut Self) -> T) -> T {
         let steps = self.state.steps();
         let outcome = run(self);
         self.executed = self.executed.saturating_add(self.state.steps().abs_diff(steps));
         outcome
     }
 
-    fn hot_forward<const ONE: bool>(&mut self, limit: u64) -> Exit {
-        let code = &self.program.module().code;
+    /// Count a step: one that leads nowhere else, as into what replaces a reversal, is one too.
+    pub(crate) fn count_step(&mut self, run: impl FnOnce(&mut Self) -> Outcome) -> Outcome {
+        let executed = self.executed;
+        let outcome = self.count(run);
+        let is_made = matches!(outcome, Ok(()) | Err(Stop::Raised { .. } | Stop::Due { .. }));
+        if is_made && self.executed == executed {
+            self.executed = self.executed.saturating_add(1);
+        }
+        outcome
+    }
+
+    pub(crate) fn hot_forward<const ONE: bool>(&mut self, code: &[Instr], limit: u64) -> Exit {
         let mut place = self.state.place;
         let mut values = values!(self);
         let exit = match &mut self.tape {

@@ -17,6 +17,8 @@ pub struct Event {
     pub report: Option<MotionReport>,
     /// How many instructions lie between the start of the program and here, after it.
     pub steps: u64,
+    /// How many instructions the machine had run or reversed before it.
+    pub executed: u64,
     /// How many blocks with a reverse of their own are open around it: what is never taken back
     /// outside such a block cannot be passed over.
     pub open_blocks: u32,

@@ -566,8 +566,9 @@ impl Machine<'_> {
         let instr = self.program.module().code[at];
         let (steps, frames) = (self.state.steps(), self.state.frames.len());
         let (open_blocks, branches) = (self.state.open_blocks, self.state.branches());
-        let pc = at as u32;
-        let event = Event { direction, pc, instr, report, steps, open_blocks, frames, branches };
+        let (pc, executed) = (at as u32, self.executed);
+        let event =
+            Event { direction, pc, instr, report, steps, executed, open_blocks, frames, branches };
         host.observer.on_event(&event, host.cell);
     }
 }

@@ -73,3 +73,4 @@ pub use assemble::assemble;
 pub use declare::DIRECTIVES;
 pub use disassemble::{disassemble, disassemble_function, instruction};
 pub use error::{AsmError, MAX_ERRORS};
+pub use nearest::nearest;

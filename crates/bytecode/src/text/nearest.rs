@@ -6,10 +6,8 @@ const MAX_CANDIDATES: usize = 1024;
 
 /// The candidate with the fewest letters added, left out or changed, if they are few; of equals the
 /// first.
-pub(super) fn nearest<'c>(
-    name: &str,
-    candidates: impl IntoIterator<Item = &'c str>,
-) -> Option<&'c str> {
+#[must_use]
+pub fn nearest<'c>(name: &str, candidates: impl IntoIterator<Item = &'c str>) -> Option<&'c str> {
     let allowed = name.len().div_ceil(4).min(3);
     candidates
         .into_iter()

@@ -1,0 +1,36 @@
+//! The debugger: a session over a machine, with the whole run that led there.
+//!
+//! A run records what it depends on that is outside the machine. From that every moment of it can
+//! be shown again, bit for bit, by a machine that commands nothing; copies of the machine along the
+//! run make any of them near. So one can go back in two ways that are never confused: in *reverse*,
+//! live, which commands the workcell and obeys the classes; and *rewound*, which shows what was.
+//!
+//! Reading order: [`recording`], what is recorded; [`recorder`] and [`replay`], the workcells that
+//! write and read it; [`mod@drive`], the clock; [`timeline`], the copies; [`rewound`], a moment
+//! shown; [`run`], one line of history; [`notes`], what it did; [`subject`] and [`condition`], what
+//! can be asked; `writers`, what can change that; [`breakpoint`]; [`place`]; [`session`], what
+//! fronts use.
+//! It knows modules and machines, and neither source languages nor how anything is shown.
+
+pub mod breakpoint;
+pub mod condition;
+pub mod drive;
+pub mod notes;
+pub mod place;
+pub mod recorder;
+pub mod recording;
+pub mod replay;
+pub mod rewound;
+pub mod run;
+pub mod session;
+pub mod subject;
+pub mod timeline;
+mod writers;
+
+pub use breakpoint::{Breakpoint, Hit, Piece, PlaceError, Places, What};
+pub use condition::{ConditionError, Expression};
+pub use place::{Mode, Position, SourcePlace};
+pub use recording::{Moment, Recording};
+pub use run::{NoFork, Run};
+pub use session::{Change, Declined, Grain, Halt, Session, Walk, Why};
+pub use subject::{Look, Subject, Value};

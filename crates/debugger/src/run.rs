@@ -1,0 +1,350 @@
+//! One line of history: a machine where its run has come to, the recording of how it came there,
+//! and the way back to every moment of it.
+//!
+//! A run with a workcell is *live*: driving it commands the workcell. One without is a recording,
+//! which can only be looked at.
+
+use crate::drive::{Driven, Pace, drive};
+use crate::notes::{Note, Noting};
+use crate::recorder::{Copies, Recorder, Senses, facts, world};
+use crate::recording::{Command, Frame, Log, Moment, Order, Recording, Stretch};
+use crate::replay::{Cursor, Replay};
+use crate::rewound::Rewound;
+use crate::timeline::{Checkpoint, Timeline};
+use obverse_bytecode::Verified;
+use obverse_vm::{LinkError, Machine, Observer, Stop};
+use obverse_workcell::{Fault, Workcell};
+use std::collections::BTreeMap;
+
+/// One line of history.
+#[derive(Debug)]
+pub struct Run<'p, C> {
+    machine: Machine<'p>,
+    cell: Option<C>,
+    recording: Recording,
+    timeline: Timeline,
+    notes: Vec<Note>,
+    senses: Senses,
+    copies: Option<Copies<C>>,
+    forced: BTreeMap<u16, bool>,
+    /// How many commands there were when the machine was last driven, if the same order goes on
+    /// from there: a trap leads back to the beginning of its statement, and ends what was ordered.
+    goes_on_at: Option<usize>,
+    /// Where going back ends since a variable was changed by hand, in steps of the program.
+    changed_at: Option<u64>,
+}
+
+impl<'p, C: Workcell> Run<'p, C> {
+    /// At the start of a program, in a workcell.
+    ///
+    /// # Errors
+    /// All that the program needs and the workcell lacks.
+    pub fn new(program: &'p Verified, cell: C) -> Result<Self, Vec<LinkError>> {
+        let machine = Machine::new(program, &cell)?;
+        let recording = Recording {
+            facts: facts(program.module(), &cell),
+            start: world(&cell),
+            log: Log::default(),
+            stretches: vec![Stretch { order: Order::Forward, begin: Moment(0), frame: 0 }],
+            end: Moment(0),
+        };
+        Ok(Self::begin(machine, Some(cell), recording))
+    }
+
+    fn begin(machine: Machine<'p>, cell: Option<C>, recording: Recording) -> Self {
+        let cursor = Cursor::start(&recording);
+        let start = Checkpoint { moment: Moment(0), stretch: 0, cursor, kept: machine.keep() };
+        Self {
+            machine,
+            cell,
+            recording,
+            timeline: Timeline::new(start),
+            notes: Vec::new(),
+            senses: Senses::default(),
+            copies: None,
+            forced: BTreeMap::new(),
+            goes_on_at: Some(0),
+            changed_at: None,
+        }
+    }
+
+    /// A recording at its end. With the workcell that it began in, if that is simulated, what
+    /// would have been can be tried.
+    ///
+    /// # Errors
+    /// What the program needs and the recording lacks; none if the recording is of another run.
+    pub fn of_recording(
+        program: &'p Verified,
+        recording: Recording,
+    ) -> Result<Self, Option<Vec<LinkError>>> {
+        let mut cursor = Cursor::start(&recording);
+        let machine = Machine::new(program, &Replay::new(&recording, &mut cursor)).map_err(Some)?;
+        let mut run = Self::begin(machine, None, recording);
+        run.replay_all().then_some(run).ok_or(None)
+    }
+
+    /// Go through the whole recording, and note what is in it. Whether it fits the program.
+    fn replay_all(&mut self) -> bool {
+        let mut rewound = Rewound::at(&self.machine, self.timeline.before(Moment(0)));
+        while rewound.moment() < self.recording.end && !rewound.cursor().is_lost() {
+            let until_due = self.timeline.until_due(rewound.moment());
+            let to = rewound.moment().after(until_due.unwrap_or(1)).min(self.recording.end);
+            let offset = rewound.moment().0.wrapping_sub(rewound.machine().executed());
+            let mut noting = Noting { notes: &mut self.notes, offset, observer: &mut () };
+            let Some(_) = rewound.advance_some(&self.recording, to, &mut noting) else { break };
+            if self.timeline.until_due(rewound.moment()).is_none() {
+                self.timeline.keep(rewound.checkpoint());
+            }
+        }
+        let is_whole = rewound.moment() == self.recording.end && !rewound.cursor().is_lost();
+        rewound.go_to(&self.recording, &self.timeline, self.recording.end);
+        self.machine = rewound.machine().clone();
+        is_whole
+    }
+
+    /// The machine where the run has come to.
+    #[must_use]
+    pub fn machine(&self) -> &Machine<'p> {
+        &self.machine
+    }
+
+    /// The workcell, if the run is live.
+    #[must_use]
+    pub fn cell(&self) -> Option<&C> {
+        self.cell.as_ref()
+    }
+
+    /// How it came there.
+    #[must_use]
+    pub fn recording(&self) -> &Recording {
+        &self.recording
+    }
+
+    /// Places along it.
+    #[must_use]
+    pub fn timeline(&self) -> &Timeline {
+        &self.timeline
+    }
+
+    /// What it did that is worth telling, oldest first.
+    #[must_use]
+    pub fn notes(&self) -> &[Note] {
+        &self.notes
+    }
+
+    /// Where going back ends since a variable was changed by hand, in steps of the program.
+    #[must_use]
+    pub fn changed_at(&self) -> Option<u64> {
+        self.changed_at
+    }
+
+    /// The level of an input when it was last read; none if it was not.
+    #[must_use]
+    pub fn input(&self, bit: u16) -> Option<bool> {
+        self.senses.input(bit)
+    }
+
+    /// The run at its end, as a recording shows it.
+    #[must_use]
+    pub fn rewound(&self) -> Rewound<'p> {
+        let mut rewound = Rewound::at(&self.machine, self.timeline.before(self.recording.end));
+        rewound.go_to(&self.recording, &self.timeline, self.recording.end);
+        rewound
+    }
+
+    /// Drive the machine where the run has come to, and record it; none of a recording. It stops
+    /// early where a copy is due: `stop` is none then.
+    pub fn drive(
+        &mut self,
+        order: Order,
+        pace: Pace<'_>,
+        observer: &mut dyn Observer,
+    ) -> Option<Driven> {
+        let cell = self.cell.as_mut()?;
+        begin(&mut self.recording, order, self.goes_on_at);
+        let until_due = self.timeline.until_due(self.recording.end).unwrap_or(1);
+        let pace = match pace {
+            Pace::Step => Pace::Step,
+            Pace::Run(most) => Pace::Run(most.min(until_due)),
+            Pace::To(stops, most) => Pace::To(stops, most.min(until_due)),
+        };
+        let (log, senses) = (&mut self.recording.log, &mut self.senses);
+        let mut recorder = Recorder::new(cell, log, senses, self.copies.as_mut(), &self.forced);
+        let offset = self.recording.end.0.wrapping_sub(self.machine.executed());
+        let mut noting = Noting { notes: &mut self.notes, offset, observer };
+        let driven = drive(&mut self.machine, order, pace, &mut recorder, &mut noting);
+        drop(recorder);
+        let is_trapped = matches!(driven.stop, Some(Stop::Trap(_)));
+        self.goes_on_at = (!is_trapped).then_some(self.recording.log.frames.len());
+        self.recording.end = self.recording.end.after(driven.ticks);
+        if matches!(order, Order::SetGlobal(..) | Order::SetLocal(..)) {
+            self.changed_at = Some(self.machine.state().steps());
+        }
+        self.keep_if_due();
+        Some(driven)
+    }
+
+    fn keep_if_due(&mut self) {
+        if self.timeline.until_due(self.recording.end).is_some() {
+            return;
+        }
+        let stretch = self.recording.stretches.len() - 1;
+        let (Some(cell), moment) = (&self.cell, self.recording.end) else { return };
+        let log = &self.recording.log;
+        let cursor =
+            Cursor::here(world(cell), log.frames.len(), log.readings.len(), self.senses.known());
+        self.timeline.keep(Checkpoint { moment, stretch, cursor, kept: self.machine.keep() });
+    }
+
+    /// Give the command without which nothing moves after a stop.
+    pub fn release(&mut self) {
+        let Some(cell) = self.cell.as_mut() else { return };
+        let (log, senses) = (&mut self.recording.log, &mut self.senses);
+        let copies = self.copies.as_mut();
+        let mut recorder = Recorder::new(cell, log, senses, copies, &self.forced);
+        obverse_workcell::Safety::release(&mut recorder);
+    }
+}
+
+impl<'p, C: Workcell + Clone> Run<'p, C> {
+    /// The same run in a simulated workcell, of which copies are kept: what would have been can be
+    /// tried. Of a recording: in the workcell that it began in.
+    #[must_use]
+    pub fn simulated(mut self, start: Option<C>) -> Self {
+        let (frame, cell) = match (&self.cell, &start) {
+            (Some(cell), _) => (self.recording.log.frames.len(), cell),
+            (None, Some(start)) => (0, start),
+            (None, None) => return self,
+        };
+        self.copies = Some(Copies::new(C::clone, frame, cell));
+        self
+    }
+}
+
+/// An order is given at the end of a recording. It goes on with the last one where that can go on,
+/// after so many commands, unless something was commanded meanwhile.
+fn begin(recording: &mut Recording, order: Order, goes_on_at: Option<usize>) {
+    let frames = recording.log.frames.len();
+    let is_way = matches!(order, Order::Forward | Order::Reverse | Order::Unwind);
+    let is_last = recording.stretches.last().is_some_and(|last| last.order == order);
+    if !(is_way && is_last && goes_on_at == Some(frames)) {
+        let begin = recording.end;
+        recording.stretches.push(Stretch { order, begin, frame: frames as u64 });
+    }
+}
+
+/// Why there is no going on from a moment otherwise.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum NoFork {
+    /// No copy of the workcell is kept: it is none that is simulated.
+    NotSimulated,
+    /// The workcell does not do again what it did: its file has changed since.
+    AnotherWorkcell {
+        /// The first command that it did otherwise.
+        frame: usize,
+    },
+}
+
+impl std::fmt::Display for NoFork {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        match self {
+            Self::NotSimulated => write!(f, "only a simulated workcell can go on otherwise"),
+            Self::AnotherWorkcell { frame } => write!(
+                f,
+                "the workcell does not do again what it did at command {frame}: its file has \
+                 changed since the run"
+            ),
+        }
+    }
+}
+
+impl<'p, C: Workcell> Run<'p, C> {
+    /// A live run that goes on from a moment of this one, which stays as it is.
+    ///
+    /// # Errors
+    /// If the workcell of that moment cannot be had.
+    pub fn fork(&self, at: &Rewound<'p>) -> Result<Self, NoFork> {
+        let frame = at.cursor().frame();
+        let copies = self.copies.as_ref().ok_or(NoFork::NotSimulated)?;
+        let (from, mut cell) = copies.before(frame).ok_or(NoFork::NotSimulated)?;
+        for number in from..frame {
+            self.do_again(number, &mut cell)
+                .ok_or(NoFork::AnotherWorkcell { frame: number + 1 })?;
+        }
+        let recording = self.recording.up_to(at);
+        Ok(Self {
+            machine: at.machine().clone(),
+            copies: Some(Copies::new(copies.how(), frame, &cell)),
+            cell: Some(cell),
+            timeline: self.timeline.before_all_of(at.moment()),
+            notes: self.notes.iter().filter(|note| note.moment < at.moment()).copied().collect(),
+            senses: Senses::at(at.cursor()),
+            forced: self.forced.clone(),
+            goes_on_at: Some(frame),
+            changed_at: self.changed_at.filter(|steps| *steps <= at.machine().state().steps()),
+            recording,
+        })
+    }
+
+    /// Let a workcell do a command of the recording; none if it comes to something else.
+    fn do_again(&self, number: usize, cell: &mut C) -> Option<()> {
+        let log = &self.recording.log;
+        let frame = log.frames.get(number)?;
+        let done: Result<(), Fault> = match frame.command {
+            Command::Execute(index) => {
+                let moved = log.motions.get(index as usize)?;
+                let done = cell.execute(&moved.motion).map(|_| ());
+                if cell.joints().bits() != moved.joints.bits() {
+                    return None;
+                }
+                done
+            }
+            Command::Output { bit, level, .. } => cell.set_output(bit, level),
+            Command::Wait(duration_s) => cell.wait(duration_s),
+            Command::Release => {
+                cell.release();
+                Ok(())
+            }
+        };
+        let is_same = done.err().as_ref() == log.fault(frame)
+            && cell.held() == frame.held
+            && cell.now_s().to_bits() == frame.now_s.to_bits();
+        is_same.then_some(())
+    }
+
+    /// From here on, an input is read as this level, or as what it is.
+    pub fn force_input(&mut self, bit: u16, level: Option<bool>) {
+        match level {
+            Some(level) => drop(self.forced.insert(bit, level)),
+            None => drop(self.forced.remove(&bit)),
+        }
+    }
+
+    /// The workcell, to change it by hand; what is commanded so is not recorded.
+    pub fn cell_mut(&mut self) -> Option<&mut C> {
+        self.cell.as_mut()
+    }
+}
+
+impl Recording {
+    /// The recording up to where it is shown.
+    fn up_to(&self, at: &Rewound<'_>) -> Self {
+        let log = &self.log;
+        let taken = &log.frames[..at.cursor().frame().min(log.frames.len())];
+        let is_motion = |frame: &&Frame| matches!(frame.command, Command::Execute(_));
+        let motions = taken.iter().filter(is_motion).count();
+        let faults = taken.iter().filter(|frame| frame.fault.is_some()).count();
+        Self {
+            facts: self.facts.clone(),
+            start: self.start.clone(),
+            log: Log {
+                frames: taken.to_vec(),
+                motions: log.motions[..motions].to_vec(),
+                faults: log.faults[..faults].to_vec(),
+                readings: log.readings[..at.cursor().readings()].to_vec(),
+            },
+            stretches: self.stretches.iter().take(at.stretch() + 1).copied().collect(),
+            end: at.moment(),
+        }
+    }
+}

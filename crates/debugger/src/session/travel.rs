@@ -1,0 +1,387 @@
+//! Moving: by instructions, by statements, out of calls, on to breakpoints, forward and back.
+//!
+//! Forward is the same live and rewound: hop by hop, from one place that may matter to the next.
+//! Live in reverse every instruction is a hop. Rewound, going back is looking for the newest moment
+//! before this one at which a run forward would have stopped.
+
+use super::{Declined, Session, look_at};
+use crate::breakpoint::{Before, Breakpoint, Hit};
+use crate::drive::Pace;
+use crate::place::is_at_statement;
+use crate::recording::{Moment, Order};
+use crate::rewound::{Halted, Rewound};
+use obverse_bytecode::Module;
+use obverse_vm::{Direction, Machine, Refusal, State, Stop, Stops, can_stop_at};
+use obverse_workcell::Workcell;
+use std::sync::atomic::Ordering;
+
+/// How many instructions a live run makes at once, at the most: as often it can be interrupted.
+const BURST: u64 = 1 << 18;
+/// The same where it commands the workcell, which takes longer.
+const SLOW_BURST: u64 = 256;
+
+/// How long a step is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Grain {
+    /// One instruction.
+    Instruction,
+    /// To the beginning of a statement of the source.
+    Statement,
+}
+
+/// How to go on.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Walk {
+    /// A step, into calls.
+    Step(Grain),
+    /// A step over calls.
+    Next(Grain),
+    /// Out of the call.
+    Finish,
+    /// Until something stops it.
+    Continue,
+}
+
+/// Why a command came to its end.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Halt {
+    /// It did what it was to do.
+    Done,
+    /// Breakpoints.
+    Hits(Vec<Hit>),
+    /// The machine or the workcell.
+    Stopped(Stop),
+    /// Live, it would go back over a variable that was changed by hand.
+    Changed,
+    /// The end of what is recorded.
+    EndOfRecording,
+    /// The start of what is recorded.
+    StartOfRecording,
+    /// It has run as many instructions as one command may.
+    Limit,
+    /// Somebody interrupted it.
+    Interrupted,
+    /// The recording does not fit the program.
+    Lost,
+}
+
+impl Halt {
+    /// What cannot be taken back, if that is what stopped it.
+    #[must_use]
+    pub fn refusal(&self) -> Option<&Refusal> {
+        match self {
+            Self::Stopped(Stop::Refused(refusal)) => Some(refusal),
+            _ => None,
+        }
+    }
+}
+
+/// What a walk began with.
+#[derive(Clone, Copy)]
+struct Origin {
+    depth: usize,
+    walk: Walk,
+}
+
+impl Origin {
+    fn of(walk: Walk, state: &State) -> Self {
+        Self { depth: state.frames().len(), walk }
+    }
+
+    /// Whether a walk that made a hop is where it was to go.
+    fn is_there(self, module: &Module, state: &State) -> bool {
+        let depth = state.frames().len();
+        let is_at = |grain: Grain| match grain {
+            Grain::Instruction => true,
+            Grain::Statement => is_at_statement(module, state),
+        };
+        match self.walk {
+            Walk::Step(grain) => is_at(grain),
+            Walk::Next(grain) => depth <= self.depth && is_at(grain),
+            Walk::Finish => depth < self.depth && state.operands().is_empty(),
+            Walk::Continue => false,
+        }
+    }
+
+    /// Where nothing can be missed: the stops, and where the call returns that is under way.
+    fn stops(self, module: &Module, state: &State, stops: Option<&Stops>) -> Option<Stops> {
+        let stops = stops?;
+        let depth = match self.walk {
+            Walk::Continue => return Some(stops.clone()),
+            Walk::Step(_) => return None,
+            Walk::Next(_) => self.depth,
+            Walk::Finish => self.depth.checked_sub(1)?,
+        };
+        let frame = state.frames().get(depth)?;
+        let is_plain = state.branches().is_empty() && can_stop_at(module, frame.return_pc);
+        is_plain.then(|| stops.with(frame.return_pc))
+    }
+}
+
+impl<'p, C: Workcell> Session<'p, C> {
+    /// Go on, in a direction. Live this commands the workcell; rewound it shows what was.
+    pub fn go(&mut self, direction: Direction, walk: Walk) -> Halt {
+        self.interrupt.store(false, Ordering::Relaxed);
+        let halt = match (&self.view, direction) {
+            (None, _) if self.run.cell().is_some() => self.go_live(direction, walk),
+            (_, Direction::Forward) => self.go_shown(walk),
+            (_, Direction::Reverse) => self.go_shown_back(walk),
+        };
+        if let Halt::Hits(hits) = &halt {
+            let gone: Vec<u32> = hits.iter().map(|hit| hit.id).collect();
+            let before = self.breakpoints.len();
+            self.breakpoints.retain(|it| !(it.is_temporary && gone.contains(&it.id)));
+            if self.breakpoints.len() < before {
+                self.stops = None;
+            }
+        }
+        halt
+    }
+
+    fn go_live(&mut self, direction: Direction, walk: Walk) -> Halt {
+        let module = self.module();
+        let origin = Origin::of(walk, self.run.machine().state());
+        let all = self.stops();
+        let until = self.run.recording().end.after(self.limit);
+        let mut stops = origin.stops(module, self.run.machine().state(), all.as_ref());
+        let mut depth = origin.depth;
+        loop {
+            if self.run.recording().end >= until {
+                return Halt::Limit;
+            }
+            if self.interrupt.swap(false, Ordering::Relaxed) {
+                return Halt::Interrupted;
+            }
+            if direction == Direction::Reverse && self.is_at_change() {
+                return Halt::Changed;
+            }
+            let state = self.run.machine().state();
+            if depth != state.frames().len() && walk != Walk::Continue {
+                depth = state.frames().len();
+                stops = origin.stops(module, state, all.as_ref());
+            }
+            let before = self.look(|look| Before::of(&self.breakpoints, look));
+            let stop = self.hop(direction, stops.as_ref());
+            let hits = self.hits(&before, direction);
+            if let Some(stop) = stop.filter(|stop| !matches!(stop, Stop::Raised { .. })) {
+                return Halt::Stopped(stop);
+            }
+            if !hits.is_empty() {
+                return Halt::Hits(hits);
+            }
+            if origin.is_there(module, self.run.machine().state()) {
+                return Halt::Done;
+            }
+        }
+    }
+
+    /// Whether going back further would be over a variable that was changed by hand.
+    fn is_at_change(&self) -> bool {
+        let steps = self.run.machine().state().steps();
+        self.run.changed_at().is_some_and(|changed| steps <= changed)
+    }
+
+    /// Live, to the next place that may matter.
+    fn hop(&mut self, direction: Direction, stops: Option<&Stops>) -> Option<Stop> {
+        let order = match direction {
+            Direction::Forward => Order::Forward,
+            Direction::Reverse => Order::Reverse,
+        };
+        let is_at_stop =
+            |machine: &Machine<'_>| stops.is_some_and(|stops| stops.has(machine.state().pc()));
+        let mut most = BURST;
+        loop {
+            let frames = self.run.recording().log.frames.len();
+            let pace = match stops {
+                Some(stops) if direction == Direction::Forward => {
+                    let machine = self.run.machine();
+                    let is_close = is_at_stop(machine) || machine.state().is_compensating();
+                    if is_close { Pace::Step } else { Pace::To(stops, most) }
+                }
+                _ => Pace::Step,
+            };
+            let is_step = matches!(pace, Pace::Step);
+            let driven = self.run.drive(order, pace, &mut *self.observer)?;
+            let is_interrupted = self.interrupt.load(Ordering::Relaxed);
+            if driven.stop.is_some() || is_step || is_interrupted || is_at_stop(self.run.machine())
+            {
+                return driven.stop;
+            }
+            most = if self.run.recording().log.frames.len() > frames { SLOW_BURST } else { BURST };
+        }
+    }
+
+    /// The breakpoints that are come to here.
+    fn hits(&mut self, before: &Before, direction: Direction) -> Vec<Hit> {
+        let found: Vec<Hit> = self.look(|look| {
+            let hit = |it: &Breakpoint| it.hit(before, look, direction);
+            self.breakpoints.iter().filter_map(hit).collect()
+        });
+        let mut hits = Vec::new();
+        for hit in found {
+            let breakpoint = self.breakpoints.iter_mut().find(|it| it.id == hit.id);
+            let Some(breakpoint) = breakpoint else { continue };
+            breakpoint.hits += 1;
+            if breakpoint.hits > breakpoint.ignored {
+                match &hit.log {
+                    Some(text) => self.told.push((hit.id, text.clone())),
+                    None => hits.push(hit),
+                }
+            }
+        }
+        hits
+    }
+
+    /// What breakpoints have told since it was last asked for.
+    pub fn take_told(&mut self) -> Vec<(u32, String)> {
+        std::mem::take(&mut self.told)
+    }
+
+    /// Rewound, forward over what is recorded.
+    fn go_shown(&mut self, walk: Walk) -> Halt {
+        let module = self.module();
+        let Some(mut view) = self.view.take() else { return Halt::EndOfRecording };
+        let origin = Origin::of(walk, view.machine().state());
+        let all = self.stops();
+        let until = view.moment().after(self.limit).min(self.run.recording().end);
+        let halt = loop {
+            let stops = origin.stops(module, view.machine().state(), all.as_ref());
+            let before = look_at(module, self.run.recording(), &view, |look| {
+                Before::of(&self.breakpoints, look)
+            });
+            let direction = view.direction(self.run.recording());
+            let halted = view.walk_on(self.run.recording(), until, stops.as_ref());
+            if halted == Halted::Lost {
+                break Halt::Lost;
+            }
+            self.view = Some(view);
+            let hits = self.hits(&before, direction);
+            let Some(shown) = self.view.take() else { return Halt::Lost };
+            view = shown;
+            if !hits.is_empty() {
+                break Halt::Hits(hits);
+            }
+            if halted == Halted::There {
+                let is_end = view.moment() >= self.run.recording().end;
+                break if is_end { Halt::EndOfRecording } else { Halt::Limit };
+            }
+            if origin.is_there(module, view.machine().state()) {
+                break Halt::Done;
+            }
+            if self.interrupt.swap(false, Ordering::Relaxed) {
+                break Halt::Interrupted;
+            }
+        };
+        self.view = Some(view);
+        halt
+    }
+
+    /// Rewound, back to the newest moment before this one at which the walk would have stopped.
+    fn go_shown_back(&mut self, walk: Walk) -> Halt {
+        let module = self.module();
+        let now = self.moment();
+        let Some(view) = self.view.clone() else { return Halt::StartOfRecording };
+        let origin = Origin::of(walk, view.machine().state());
+        let stops = match walk {
+            Walk::Continue => self.stops(),
+            _ => None,
+        };
+        let mut found: Option<(Moment, Vec<Hit>)> = None;
+        let mut before: Option<(Moment, Before)> = None;
+        let (breakpoints, recording) = (&self.breakpoints, self.run.recording());
+        let is_found = self.search(view, now, stops.as_ref(), |shown: &Rewound<'p>| {
+            let moment = shown.moment();
+            if moment < now {
+                // At the start of a piece nothing is known of what was before it, which the piece
+                // before ends with.
+                let none = Before::default();
+                let known = before.as_ref().filter(|(then, _)| *then < moment);
+                let before = known.map_or(&none, |(_, before)| before);
+                let hits: Vec<Hit> = look_at(module, recording, shown, |look| {
+                    let hit = |it: &Breakpoint| it.hit(before, look, Direction::Reverse);
+                    breakpoints.iter().filter_map(hit).filter(|hit| hit.log.is_none()).collect()
+                });
+                let is_there = origin.is_there(module, shown.machine().state());
+                if !hits.is_empty() || is_there {
+                    found = Some((moment, hits));
+                }
+            }
+            let here = look_at(module, recording, shown, |look| Before::of(breakpoints, look));
+            before = Some((moment, here));
+            found.is_some()
+        });
+        if !is_found {
+            self.show(Some(Moment(0)));
+            return Halt::StartOfRecording;
+        }
+        let (moment, hits) = found.unwrap_or_default();
+        self.show(Some(moment));
+        if hits.is_empty() { Halt::Done } else { Halt::Hits(hits) }
+    }
+
+    /// Show a moment of the run, or the run where it has come to.
+    pub(super) fn show(&mut self, moment: Option<Moment>) {
+        let Some(moment) = moment else {
+            let is_live = self.run.cell().is_some();
+            self.view = (!is_live).then(|| self.run.rewound());
+            return;
+        };
+        let mut view = self.view.take().unwrap_or_else(|| self.run.rewound());
+        view.go_to(self.run.recording(), self.run.timeline(), moment);
+        self.view = Some(view);
+    }
+
+    /// The moment that is shown; none if that is the run where it has come to.
+    pub(super) fn shown(&self) -> Option<Moment> {
+        self.view.as_ref().map(Rewound::moment)
+    }
+
+    /// To where the run has come to: live again, if it is.
+    pub fn go_to_end(&mut self) {
+        self.jumped();
+        self.show(None);
+    }
+
+    /// To a moment of the run, rewound.
+    ///
+    /// # Errors
+    /// If there is no such moment.
+    pub fn go_to(&mut self, moment: Moment) -> Result<(), Declined> {
+        let end = self.run.recording().end;
+        if moment > end {
+            return Err(Declined::NoMoment { asked: moment, end });
+        }
+        self.jumped();
+        self.show(Some(moment));
+        Ok(())
+    }
+
+    /// To a bookmark.
+    ///
+    /// # Errors
+    /// If there is none of this name.
+    pub fn go_to_bookmark(&mut self, name: &str) -> Result<(), Declined> {
+        let known = || self.bookmarks.keys().cloned().collect();
+        let moment = self.bookmarks.get(name).copied();
+        let missing = || Declined::NoBookmark { name: name.to_owned(), known: known() };
+        self.go_to(moment.ok_or_else(missing)?)
+    }
+
+    /// Remember what is shown, so that the jump that follows can be undone.
+    pub(super) fn jumped(&mut self) {
+        if self.jumps.len() == super::MAX_JUMPS {
+            self.jumps.remove(0);
+        }
+        self.jumps.push(self.shown());
+    }
+
+    /// Undo the last jump.
+    ///
+    /// # Errors
+    /// If there is none.
+    pub fn undo_jump(&mut self) -> Result<(), Declined> {
+        let shown = self.jumps.pop().ok_or(Declined::NoJump)?;
+        self.show(shown);
+        Ok(())
+    }
+}

@@ -1,0 +1,305 @@
+//! What can be asked about at a moment: variables, settings, errors, and what is seen of the
+//! workcell. Knows names and values, and nothing of how a moment is reached.
+
+use crate::recording::World;
+use obverse_bytecode::text::nearest;
+use obverse_bytecode::{Mentioned, Module};
+use obverse_isa::{ErrorId, GlobalId, LocalId, Setting, SpeedId, Type};
+use obverse_vm::State;
+use obverse_workcell::ItemId;
+
+/// A machine and its workcell at a moment.
+#[derive(Clone, Copy)]
+pub struct Look<'a> {
+    /// The program.
+    pub module: &'a Module,
+    /// The machine's state.
+    pub state: &'a State,
+    /// What is seen of the workcell.
+    pub world: &'a dyn Seen,
+}
+
+/// What is seen of a workcell without reading anything that the program did not read.
+pub trait Seen {
+    /// Where the joints are, in radians.
+    fn joints(&self) -> [f64; 6];
+    /// The level of an output.
+    fn output(&self, bit: u16) -> Option<bool>;
+    /// The level of an input.
+    fn input(&self, bit: u16) -> Option<bool>;
+    /// The force, in newtons.
+    fn force_n(&self) -> f64;
+    /// What is held.
+    fn held(&self) -> Option<ItemId>;
+    /// The clock, in seconds.
+    fn now_s(&self) -> f64;
+    /// The name of an item of the workcell, as the program knows it.
+    fn item_name(&self, item: ItemId) -> Option<String>;
+}
+
+impl World {
+    /// The level of an output.
+    pub(crate) fn output(&self, bit: u16) -> Option<bool> {
+        self.outputs.get(usize::from(bit)).copied()
+    }
+}
+
+/// Something that can be asked about.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Subject {
+    /// A variable of the program.
+    Global(GlobalId),
+    /// A local variable of the innermost call of a function.
+    Local(u16, LocalId),
+    /// An output.
+    Output(u16),
+    /// An input, as the program read it last.
+    Input(u16),
+    /// A joint, from 0 at the base.
+    Joint(u8),
+    /// Where the arm is.
+    Joints,
+    /// The force.
+    Force,
+    /// What is held.
+    Held,
+    /// A setting.
+    Setting(Setting),
+    /// Whether an error is pending.
+    Error(ErrorId),
+    /// The workcell's clock.
+    Time,
+    /// How many instructions lie between the start of the program and here.
+    Steps,
+}
+
+/// What it is.
+#[derive(Clone, Debug)]
+pub enum Value {
+    /// An integer.
+    Int(i64),
+    /// A real, in SI units.
+    Real(f64),
+    /// A truth value or a level.
+    Bool(bool),
+    /// Six joints, in radians.
+    Joints([f64; 6]),
+    /// The name of an item, a tool, a speed, or joints.
+    Name(String),
+    /// There is none here: no such call is under way, or it was never read.
+    Absent,
+}
+
+impl PartialEq for Value {
+    /// Reals are the same if their bits are.
+    fn eq(&self, other: &Self) -> bool {
+        match (self, other) {
+            (Self::Int(a), Self::Int(b)) => a == b,
+            (Self::Real(a), Self::Real(b)) => a.to_bits() == b.to_bits(),
+            (Self::Bool(a), Self::Bool(b)) => a == b,
+            (Self::Joints(a), Self::Joints(b)) => a.map(f64::to_bits) == b.map(f64::to_bits),
+            (Self::Name(a), Self::Name(b)) => a == b,
+            (Self::Absent, Self::Absent) => true,
+            _ => false,
+        }
+    }
+}
+
+impl std::fmt::Display for Value {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        match self {
+            Self::Int(value) => value.fmt(f),
+            Self::Real(value) => write!(f, "{value:?}"),
+            Self::Bool(value) => value.fmt(f),
+            Self::Joints(joints) => {
+                let joints = joints.map(|joint| format!("{joint:.4}")).join(", ");
+                write!(f, "[{joints}] rad")
+            }
+            Self::Name(name) => f.write_str(name),
+            Self::Absent => write!(f, "not there"),
+        }
+    }
+}
+
+/// The bits of a value of a type.
+#[must_use]
+pub fn value(module: &Module, of_type: Type, bits: u64) -> Value {
+    let name = |name: Option<&String>| Value::Name(name.cloned().unwrap_or_default());
+    let index = bits as usize;
+    match of_type {
+        Type::Int => Value::Int(bits.cast_signed()),
+        Type::Real => Value::Real(f64::from_bits(bits)),
+        Type::Bool => Value::Bool(bits != 0),
+        Type::Joints => name(module.joints.get(index).map(|(name, _)| name)),
+        Type::Item => name(module.items.get(index).map(|item| &item.name)),
+        Type::Speed => {
+            let speed = SpeedId::ALL.get(index).map_or("", |speed| speed.name());
+            Value::Name(speed.replace('_', " "))
+        }
+        Type::Tool => name(module.tools.get(index)),
+    }
+}
+
+/// The bits of a value that can be given to a variable of a type; none if it is of another.
+#[must_use]
+pub fn bits(module: &Module, of_type: Type, value: &Value) -> Option<u64> {
+    let index = |at: Option<usize>| at.map(|index| index as u64);
+    match (of_type, value) {
+        (Type::Int, Value::Int(value)) => Some(value.cast_unsigned()),
+        (Type::Real, Value::Int(value)) => Some((*value as f64).to_bits()),
+        (Type::Real, Value::Real(value)) => Some(value.to_bits()),
+        (Type::Bool, Value::Bool(value)) => Some(u64::from(*value)),
+        (Type::Joints, Value::Name(name)) => {
+            index(module.joints.iter().position(|(known, _)| known == name))
+        }
+        (Type::Item, Value::Name(name)) => {
+            index(module.items.iter().position(|item| item.name == *name))
+        }
+        (Type::Tool, Value::Name(name)) => {
+            index(module.tools.iter().position(|known| known == name))
+        }
+        (Type::Speed, Value::Name(name)) => {
+            let name = name.replace(' ', "_");
+            index(SpeedId::ALL.iter().position(|speed| speed.name() == name))
+        }
+        _ => None,
+    }
+}
+
+impl Subject {
+    /// What it is at a moment.
+    #[must_use]
+    pub fn read(&self, look: &Look<'_>) -> Value {
+        let bool = |value: Option<bool>| value.map_or(Value::Absent, Value::Bool);
+        match *self {
+            Self::Global(global) => {
+                let declared = look.module.globals.get(global.index());
+                let bits = look.state.globals().get(global.index());
+                match (declared, bits) {
+                    (Some(declared), Some(bits)) => value(look.module, declared.of_type, *bits),
+                    _ => Value::Absent,
+                }
+            }
+            Self::Local(function, local) => {
+                let mut frames = look.state.frames().iter().rev();
+                let frame = frames.find(|frame| frame.function == function);
+                let declared = look.module.functions.get(usize::from(function));
+                let declared = declared.and_then(|it| it.locals.get(local.index()));
+                match (declared, frame) {
+                    (Some(declared), Some(frame)) => {
+                        value(look.module, declared.of_type, frame.local(local.0))
+                    }
+                    _ => Value::Absent,
+                }
+            }
+            Self::Output(bit) => bool(look.world.output(bit)),
+            Self::Input(bit) => bool(look.world.input(bit)),
+            Self::Joint(index) => {
+                let joints = look.world.joints();
+                joints.get(usize::from(index)).map_or(Value::Absent, |joint| Value::Real(*joint))
+            }
+            Self::Joints => Value::Joints(look.world.joints()),
+            Self::Force => Value::Real(look.world.force_n()),
+            Self::Held => match look.world.held() {
+                Some(item) => {
+                    let number = || format!("item {}", item.0);
+                    Value::Name(look.world.item_name(item).unwrap_or_else(number))
+                }
+                None => Value::Name("nothing".to_owned()),
+            },
+            Self::Setting(setting) => {
+                let bits = look.state.settings()[setting as usize];
+                value(look.module, setting.of_type(), bits)
+            }
+            Self::Error(error) => Value::Bool(look.state.raised().contains(&error)),
+            Self::Time => Value::Real(look.world.now_s()),
+            Self::Steps => Value::Int(look.state.steps().cast_signed()),
+        }
+    }
+
+    /// Whether it changes at commands alone, so that no step between two needs to be looked at.
+    #[must_use]
+    pub fn is_of_the_workcell(&self) -> bool {
+        matches!(
+            self,
+            Self::Output(_) | Self::Joint(_) | Self::Joints | Self::Force | Self::Held | Self::Time
+        )
+    }
+
+    /// What a person calls it.
+    #[must_use]
+    pub fn name(&self, module: &Module) -> String {
+        let local = |function: u16, local: LocalId| {
+            let function = module.functions.get(usize::from(function))?;
+            Some(function.locals.get(local.index())?.name.clone())
+        };
+        match *self {
+            Self::Global(global) => {
+                module.globals.get(global.index()).map(|it| it.name.clone()).unwrap_or_default()
+            }
+            Self::Local(function, slot) => local(function, slot).unwrap_or_default(),
+            Self::Output(bit) => line_name(module, bit, true),
+            Self::Input(bit) => line_name(module, bit, false),
+            Self::Joint(index) => format!("joint {}", index + 1),
+            Self::Joints => "joints".to_owned(),
+            Self::Force => "force".to_owned(),
+            Self::Held => "held".to_owned(),
+            Self::Setting(setting) => setting.name().to_owned(),
+            Self::Error(error) => {
+                let error = module.errors.get(error.index());
+                format!("error {}", error.map_or("", |error| &error.name))
+            }
+            Self::Time => "time".to_owned(),
+            Self::Steps => "steps".to_owned(),
+        }
+    }
+}
+
+fn line_name(module: &Module, bit: u16, is_output: bool) -> String {
+    let named = module.mentions.iter().find_map(|mention| match &mention.what {
+        Mentioned::Output { name, bit: of } if is_output && *of == bit => Some(name),
+        Mentioned::Input { name, bit: of } if !is_output && *of == bit => Some(name),
+        _ => None,
+    });
+    let kind = if is_output { "output" } else { "input" };
+    match named {
+        Some(name) if *name != bit.to_string() => format!("{kind} {name}"),
+        _ => format!("{kind} {bit}"),
+    }
+}
+
+/// The output or the input of a name or a number.
+pub(crate) fn line(module: &Module, name: &str, is_output: bool) -> Option<u16> {
+    if let Ok(bit) = name.parse() {
+        return Some(bit);
+    }
+    module.mentions.iter().find_map(|mention| match &mention.what {
+        Mentioned::Output { name: known, bit } if is_output && known == name => Some(*bit),
+        Mentioned::Input { name: known, bit } if !is_output && known == name => Some(*bit),
+        _ => None,
+    })
+}
+
+/// The variable of a name: of a function, or of the program.
+pub(crate) fn variable(module: &Module, function: usize, name: &str) -> Option<(Subject, Type)> {
+    let declared = module.functions.get(function)?;
+    // Of two with one name the later is the inner one.
+    let local = declared.locals.iter().rposition(|local| local.name == name);
+    if let Some(local) = local {
+        let subject = Subject::Local(function as u16, LocalId(local as u8));
+        return Some((subject, declared.locals[local].of_type));
+    }
+    let global = module.globals.iter().position(|global| global.name == name)?;
+    Some((Subject::Global(GlobalId(global as u16)), module.globals[global].of_type))
+}
+
+/// The variable that was probably meant.
+pub(crate) fn nearest_variable<'m>(
+    module: &'m Module,
+    function: usize,
+    name: &str,
+) -> Option<&'m str> {
+    let locals = module.functions.get(function).map(|function| &function.locals);
+    let all = locals.into_iter().flatten().chain(&module.globals);
+    nearest(name, all.map(|variable| variable.name.as_str()))
+}

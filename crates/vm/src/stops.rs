@@ -1,0 +1,122 @@
+//! Places that a run stops at, at no cost to what lies between them.
+//!
+//! The loop runs a copy of the code in which such a place holds an instruction that it leaves to
+//! the step loop, and everything else runs the code itself. Why a run is to stop somewhere is not
+//! known here.
+
+use crate::hot::Exit;
+use crate::machine::{Limits, Machine};
+use crate::observe::Observer;
+use crate::state::Direction;
+use crate::step::Host;
+use crate::stop::Stop;
+use obverse_bytecode::Module;
+use obverse_isa::Instr;
+use obverse_workcell::Workcell;
+use std::collections::BTreeSet;
+
+/// Places that a run stops at.
+#[derive(Clone, Debug)]
+pub struct Stops {
+    code: Vec<Instr>,
+    at: BTreeSet<u32>,
+}
+
+impl Stops {
+    /// Before instructions of a module. One that [`can_stop_at`] rules out is left out.
+    #[must_use]
+    pub fn new(module: &Module, at: impl IntoIterator<Item = u32>) -> Self {
+        let at: BTreeSet<u32> = at.into_iter().filter(|&pc| can_stop_at(module, pc)).collect();
+        let mut code = module.code.clone();
+        for &pc in &at {
+            code[pc as usize] = Instr::Halt {};
+        }
+        Self { code, at }
+    }
+
+    /// The same and one more, that [`can_stop_at`] does not rule out.
+    #[must_use]
+    pub fn with(&self, pc: u32) -> Self {
+        let mut stops = self.clone();
+        if let Some(instr) = stops.code.get_mut(pc as usize) {
+            *instr = Instr::Halt {};
+            stops.at.insert(pc);
+        }
+        stops
+    }
+
+    /// Whether a run stops before an instruction.
+    #[must_use]
+    pub fn has(&self, pc: u32) -> bool {
+        self.at.contains(&pc)
+    }
+}
+
+/// Whether a run can stop before an instruction of a module. A join, and what an asserted one asks,
+/// belong to the step of the jump that lands there.
+#[must_use]
+pub fn can_stop_at(module: &Module, pc: u32) -> bool {
+    let rest = module.code.get(pc as usize..).unwrap_or_default();
+    let effect = rest.iter().find(|instr| !instr.info().family.is_pure());
+    let is_join = matches!(
+        effect,
+        Some(
+            Instr::Land { .. }
+                | Instr::Join { .. }
+                | Instr::JoinAssert { .. }
+                | Instr::ForTop { .. }
+                | Instr::ForExit { .. }
+                | Instr::Enter {}
+        )
+    );
+    effect.is_some() && !is_join
+}
+
+impl Machine<'_> {
+    /// Run forward until the machine stands before one of the stops, which is none, or something
+    /// else stops it. At least one step is made.
+    pub fn run_to(
+        &mut self,
+        stops: &Stops,
+        limits: Limits,
+        cell: &mut dyn Workcell,
+        observer: &mut dyn Observer,
+    ) -> Option<Stop> {
+        let allowed = self.executed.saturating_add(limits.instructions);
+        let mut is_begun = false;
+        loop {
+            if self.executed >= allowed {
+                return Some(Stop::Budget);
+            }
+            let left = allowed - self.executed;
+            let is_plain = self.state.pending.is_none() && !self.state.is_compensating();
+            let outcome = if is_begun && is_plain {
+                let mut host = Host { cell, observer };
+                self.net_of_traps(|machine| machine.burst_to(stops, left, &mut host))
+            } else {
+                self.step(Direction::Forward, cell, observer)
+            };
+            is_begun = true;
+            if let Err(stop) = outcome {
+                return Some(stop);
+            }
+            if stops.has(self.state.pc()) {
+                return None;
+            }
+        }
+    }
+
+    /// As far as the hot loop goes, and one step more unless it stands before a stop.
+    fn burst_to(&mut self, stops: &Stops, left: u64, host: &mut Host<'_>) -> crate::step::Outcome {
+        let limit = self.state.steps().saturating_add(left);
+        let exit = self.count(|machine| machine.hot_forward::<false>(&stops.code, limit));
+        if exit == Exit::Slow && stops.has(self.state.pc()) {
+            return Ok(());
+        }
+        match exit {
+            Exit::Trap(at, kind) => Err(self.trapped(at, kind)),
+            Exit::Bound | Exit::One | Exit::Full => self.check_tape(),
+            Exit::Slow => self.count_step(|machine| machine.slow_forward(host)),
+        }
+    }
+}
