@@ -3,8 +3,8 @@
 use lsp_types::{Position, Range};
 use obverse_syntax::span::Span;
 
-/// Where the lines of a text begin, and its letters that have more bytes than code units. A line ends
-/// with LF, CR LF or CR.
+/// Where the lines of a text begin, and its letters that have more bytes than code units. A line
+/// ends with LF, CR LF or CR.
 #[derive(Clone, Debug)]
 pub(crate) struct Lines {
     /// The offset of the first byte of each line; the first is 0.
