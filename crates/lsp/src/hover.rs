@@ -187,7 +187,10 @@ impl Hovered<'_, '_> {
         let ends = steps.ends_of(step).filter(|ends| !ends.ends.is_empty());
         match ends {
             Some(ends) => {
-                format!("From before it a run goes back {}", steps.words(ends, self.name_of_file()))
+                format!(
+                    "From before this statement a run goes back {}",
+                    steps.words(ends, self.name_of_file())
+                )
             }
             None => "Nothing comes here".to_owned(),
         }

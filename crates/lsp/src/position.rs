@@ -3,11 +3,15 @@
 use lsp_types::{Position, Range};
 use obverse_syntax::span::Span;
 
-/// Where the lines of a text begin. A line ends with LF, CR LF or CR.
+/// Where the lines of a text begin, and its letters that have more bytes than code units. A line
+/// ends with LF, CR LF or CR.
 #[derive(Clone, Debug)]
 pub(crate) struct Lines {
     /// The offset of the first byte of each line; the first is 0.
     starts: Vec<u32>,
+    /// Behind each letter that has more than one byte: the offset, and how many bytes there are up
+    /// to there more than code units.
+    wide: Vec<(u32, u32)>,
 }
 
 impl Lines {
@@ -20,16 +24,29 @@ impl Lines {
             _ => false,
         };
         let starts = (0..bytes.len()).filter(ends_line).map(|at| offset(at + 1));
-        Self { starts: std::iter::once(0).chain(starts).collect() }
+        let starts = std::iter::once(0).chain(starts).collect();
+        let mut surplus = 0;
+        let is_wide = |(_, c): &(usize, char)| c.len_utf8() > 1;
+        let wide = text.char_indices().filter(is_wide).map(|(at, c)| {
+            surplus += offset(c.len_utf8() - c.len_utf16());
+            (offset(at + c.len_utf8()), surplus)
+        });
+        Self { starts, wide: wide.collect() }
+    }
+
+    /// How many code units there are up to an offset.
+    fn units(&self, offset: u32) -> u32 {
+        let before = self.wide.partition_point(|(behind, _)| *behind <= offset);
+        let surplus = before.checked_sub(1).map_or(0, |last| self.wide[last].1);
+        offset - surplus
     }
 
     /// The place of an offset; beyond the end it is the end, within a letter the letter's.
-    pub(crate) fn position(&self, text: &str, offset: u32) -> Position {
-        let end = boundary(text, offset as usize);
-        let line = self.line_of(offset);
-        let begin = (self.starts[line] as usize).min(end);
-        let units = text[begin..end].encode_utf16().count();
-        Position::new(line as u32, units as u32)
+    pub(crate) fn position(&self, text: &str, at: u32) -> Position {
+        let end = offset(boundary(text, at as usize));
+        let line = self.line_of(end);
+        let start = self.starts[line].min(end);
+        Position::new(line as u32, self.units(end) - self.units(start))
     }
 
     /// The line of an offset, from 0.
@@ -48,16 +65,19 @@ impl Lines {
         let Some(&start) = self.starts.get(position.line as usize) else {
             return offset(text.len());
         };
-        let line = self.line(text, position.line as usize);
-        let mut units = position.character as usize;
-        for (at, c) in line.char_indices() {
-            let width = c.len_utf16();
-            if units < width {
-                return start + offset(at);
+        let end = start + offset(self.line(text, position.line as usize).len());
+        let wanted = self.units(start).saturating_add(position.character);
+        let (mut least, mut most) = (start, end);
+        while least < most {
+            let middle = least + (most - least).div_ceil(2);
+            // Within a letter as many as before it.
+            let whole = offset(boundary(text, middle as usize));
+            match self.units(whole) <= wanted {
+                true => least = middle,
+                false => most = middle - 1,
             }
-            units -= width;
         }
-        start + offset(line.len())
+        offset(boundary(text, least as usize))
     }
 
     /// A line, without its end.
@@ -107,6 +127,22 @@ mod tests {
         assert_eq!(lines.offset(text, Position::new(0, 2)), 1);
         assert_eq!(lines.position(text, 8), Position::new(1, 0));
         assert_eq!(lines.position(text, 10), Position::new(1, 1));
+    }
+
+    /// Letter by letter, against what the standard library counts.
+    #[test]
+    fn offsets_and_positions_are_each_others_inverse() {
+        let text = "aä\u{1F916}b\n\u{1F916}\u{1F916}ö\r\nend€";
+        let lines = Lines::new(text);
+        for (at, _) in text.char_indices().chain([(text.len(), ' ')]) {
+            let start = text[..at].rfind('\n').map_or(0, |end| end + 1);
+            let line = text[..at].matches('\n').count() as u32;
+            let units = text[start..at].encode_utf16().count() as u32;
+            let position = lines.position(text, at as u32);
+            assert_eq!(position, Position::new(line, units), "at {at}");
+            let is_line_end = text[..at].ends_with('\r');
+            assert!(is_line_end || lines.offset(text, position) == at as u32, "at {at}");
+        }
     }
 
     #[test]

@@ -12,13 +12,13 @@ use obverse_compiler::symbols::{SymbolId, SymbolKind};
 use obverse_syntax::RESERVED_WORDS;
 use obverse_syntax::codes::Code;
 use obverse_syntax::diagnostic::Severity;
-use std::collections::BTreeSet;
+use std::collections::BTreeMap;
 
 /// Why something is not renamed, for people.
 pub type Refusal = String;
 
-/// A change of a text: the key of its file, and where.
-type Place = (String, Range);
+/// A place of a name: the key of its file, and where it begins and ends there, in bytes.
+type Place = (String, u32, u32);
 
 impl Workspace {
     /// The name at a place, if it can be given another.
@@ -48,7 +48,7 @@ impl Workspace {
         name: &str,
     ) -> Result<WorkspaceEdit, Refusal> {
         is_name(name)?;
-        let mut places: BTreeSet<(String, (Position, Position))> = BTreeSet::new();
+        let mut places: BTreeMap<Place, Range> = BTreeMap::new();
         let files = self.files(uri);
         for file in &files {
             let Some((symbol, _)) = symbol_at(file, position) else { continue };
@@ -58,32 +58,36 @@ impl Workspace {
             }
             for one in file.program.symbols.of_symbol(symbol) {
                 let Some((key, range)) = file.program.place(one.span) else { continue };
-                places.insert((key, (range.start, range.end)));
+                let within = file.program.sources().locate(one.span).span;
+                places.insert((key, within.start, within.end), range);
             }
         }
         if places.is_empty() {
             return Err("there is no name here that could be changed".to_owned());
         }
-        let places: Vec<Place> =
-            places.into_iter().map(|(key, (start, end))| (key, Range::new(start, end))).collect();
-        self.try_out(&files, &places, name)?;
-        let edit = |(key, range): Place| (self.uri(&key), TextEdit::new(range, name.to_owned()));
+        self.try_out(&files, places.keys(), name)?;
+        let edit = |((key, ..), range): (Place, Range)| {
+            (self.uri(&key), TextEdit::new(range, name.to_owned()))
+        };
         Ok(changes(places.into_iter().map(edit)))
     }
 
     /// Change the texts aside, and look whether every name leads where it led.
-    fn try_out(&self, files: &[InProgram], places: &[Place], name: &str) -> Result<(), Refusal> {
+    fn try_out<'p>(
+        &self,
+        files: &[InProgram],
+        places: impl Iterator<Item = &'p Place>,
+        name: &str,
+    ) -> Result<(), Refusal> {
+        let mut by_file: BTreeMap<&str, Vec<(u32, u32)>> = BTreeMap::new();
+        for (key, start, end) in places {
+            by_file.entry(key).or_default().push((*start, *end));
+        }
         let mut texts = self.copy_of_open();
-        for (key, range) in places.iter().rev() {
-            let document = match texts.get_mut(key) {
-                Some(document) => document,
-                None => {
-                    let text = text_of(files, key).ok_or("a file of the program is not there")?;
-                    let document = Document { uri: self.uri(key), version: 0, text };
-                    texts.entry(key.clone()).or_insert(document)
-                }
-            };
-            crate::position::replace(&mut document.text, *range, name);
+        for (key, spans) in by_file {
+            let text = text_of(files, key).ok_or("a file of the program is not there")?;
+            let text = with_name(text, &spans, name);
+            texts.insert(key.to_owned(), Document { uri: self.uri(key), version: 0, text });
         }
         for file in files {
             let before = &file.program;
@@ -97,13 +101,25 @@ impl Workspace {
     }
 }
 
-/// The text of a file that is not open.
-fn text_of(files: &[InProgram], key: &str) -> Option<String> {
+/// The text of a file of the programs.
+fn text_of<'f>(files: &'f [InProgram], key: &str) -> Option<&'f str> {
     let mut found = files.iter().filter_map(|file| {
         let of_program = file.program.file_of(key)?;
-        Some(file.program.text(of_program).to_owned())
+        Some(file.program.text(of_program))
     });
     found.next()
+}
+
+/// A text with a name in the place of what stands at some places, in their order.
+fn with_name(text: &str, places: &[(u32, u32)], name: &str) -> String {
+    let mut changed = String::with_capacity(text.len());
+    let mut rest = 0;
+    for (start, end) in places {
+        changed += text.get(rest..*start as usize).unwrap_or("");
+        changed += name;
+        rest = *end as usize;
+    }
+    changed + text.get(rest..).unwrap_or("")
 }
 
 /// What is otherwise in a program in which a name has been changed, if anything is.

@@ -29,7 +29,8 @@ pub(super) fn initialized() -> InitializeResult {
         save: Some(true.into()),
         ..TextDocumentSyncOptions::default()
     };
-    let trigger = [".", " ", ":"].map(str::to_owned).to_vec();
+    // Not a blank: a list that opens by itself would take the end of the line for a choice.
+    let trigger = [".", ":"].map(str::to_owned).to_vec();
     let tokens =
         SemanticTokensOptions { legend: legend(), full: Some(true.into()), ..Default::default() };
     let rename = RenameOptions { prepare_provider: Some(true), ..RenameOptions::default() };

@@ -37,7 +37,7 @@ fn an_operation_tells_its_class_and_its_counterpart() {
     assert!(text.contains("An I/O operation"), "{text}");
     assert!(text.contains("Class *after-forward*: it can be taken back to its start"), "{text}");
     assert!(text.contains("In reverse: `io release`"), "{text}");
-    assert!(text.contains("From before it a run goes back to the start of the program"), "{text}");
+    assert!(text.contains("From before this statement a run goes back to the start"), "{text}");
     let text = hover("io «on» { set 3 high } sequence main { io on }");
     assert!(text.contains("In reverse: its outputs take their former levels"), "{text}");
 }

@@ -145,3 +145,18 @@ fn texts_of_any_bytes_are_answered() {
     ask_everything(&mut editor, "main.obv", 0, 900);
     assert_eq!(editor.leave(), Ended::Properly);
 }
+
+/// A program on one line, with letters of every width in it.
+#[test]
+fn a_line_without_end_is_answered_in_time() {
+    let mut text = "joints home = [0, 0, 0, 0, 0, 0] deg sequence main { ".to_owned();
+    for _ in 0..2_000 {
+        text += "move to home; barrier \"ä\u{1F916}\"; ";
+    }
+    text += "}";
+    let mut editor = Editor::new();
+    editor.open("main.obv", &text);
+    let begun = std::time::Instant::now();
+    ask_everything(&mut editor, "main.obv", 0, 100);
+    assert!(begun.elapsed().as_secs() < 30, "{:?}", begun.elapsed());
+}
