@@ -1,9 +1,11 @@
 //! What to do about a token that cannot stand where it stands: the help of a syntax error, and the
 //! change of the text where one is plain. It knows what is expected and what stands around.
 
+mod elsewhere;
 mod reversal;
 
 use crate::diagnostic::Suggestion;
+use crate::elsewhere::{END, UNTIL};
 use crate::expectation::Expectation;
 use crate::nearest::nearest;
 use crate::sink::SyntaxError;
@@ -45,6 +47,8 @@ impl Unexpected<'_> {
     /// What to do about it, if that can be said.
     pub(crate) fn advice(&self) -> Option<Advice> {
         self.of_reversal()
+            .or_else(|| self.of_another_language())
+            .or_else(|| self.given())
             .or_else(|| self.as_statement())
             .or_else(|| self.level())
             .or_else(|| self.after_word())
@@ -91,10 +95,8 @@ impl Unexpected<'_> {
         let is_end_of_return = self.before() == "return" && !self.begins_line();
         Some(said(match self.found {
             _ if is_end_of_return => "a sequence has no value: `return` stands alone",
-            Token::Stop => {
-                "`return` ends the sequence; to stop the program `throw` an error whose severity \
-                 is fatal"
-            }
+            Token::Stop => END,
+            Token::Until => UNTIL,
             Token::Continue => "there is no `continue`: put what follows into `if .. { .. }`",
             Token::Program => "write `sequence main { .. }`",
             _ => return None,
@@ -125,6 +127,41 @@ impl Unexpected<'_> {
         }
     }
 
+    /// What a word is given: `call put vial`, `io grip()`.
+    fn given(&self) -> Option<Advice> {
+        let name = self.surroundings.before(self.span().start)?;
+        let verb = self.surroundings.before(name.span.start)?.token;
+        if !self.expectation.allows_statement() || self.begins_line() || !name.token.is_word() {
+            return None;
+        }
+        let text = shortened(self.surroundings.text(name.span));
+        let closing = self.surroundings.after(self.span().end);
+        let is_empty = closing.filter(|closing| closing.token == Token::CloseParenthesis);
+        match (verb, self.found) {
+            (Token::Io | Token::Advance | Token::Throw, Token::OpenParenthesis) => {
+                let verb = verb.text().unwrap_or_default();
+                let help = said(format!("nothing is given to it: write `{verb} {text}`"));
+                Some(match is_empty {
+                    Some(closing) => help.replacing(self.span().to(closing.span), ""),
+                    None => help,
+                })
+            }
+            (Token::Call, found) if found.can_be_name() || is_number(found) => {
+                let given = self.text();
+                let help = format!(
+                    "what is given stands in parentheses: `call {text}({})`",
+                    shortened(given)
+                );
+                let span = Span::new(name.span.end, self.span().end);
+                Some(match self.goes_on() {
+                    true => said(help),
+                    false => said(help).replacing(span, &format!("({given})")),
+                })
+            }
+            _ => None,
+        }
+    }
+
     /// Whether something follows on its line.
     fn goes_on(&self) -> bool {
         let next = self.surroundings.after(self.span().end);
@@ -149,6 +186,10 @@ impl Unexpected<'_> {
             _ if self.found == Token::Assigned => None,
             "1" | "true" | "on" | "high" => Some(self.instead("high")),
             "0" | "false" | "off" | "low" => Some(self.instead("low")),
+            "for" => {
+                let help = "say which level: `wait until input 3 high for up to 2 s`";
+                Some(said(help).replacing(self.here(), "high "))
+            }
             "to" | "=" | "==" | "is" | ":" | "," if self.goes_on() => {
                 let help = format!("leave out the `{}`", self.text());
                 Some(said(help).replacing(self.span(), ""))
@@ -168,21 +209,21 @@ impl Unexpected<'_> {
 
     /// By the word before.
     fn after_word(&self) -> Option<Advice> {
-        let is_number = matches!(self.found, Token::Integer | Token::Quantity | Token::Real);
+        let has_number = is_number(self.found);
         let before = self.before();
         Some(said(match before {
-            "loop" | "for" if is_number => {
+            "loop" | "for" if has_number => {
                 format!("write `repeat {} times {{ .. }}`", shortened(self.text()))
+            }
+            "wait" if self.found == Token::For && self.next().is_some_and(is_number) => {
+                return self.wait_for_time();
             }
             "wait" if self.found == Token::For => {
                 "write `wait until input 3 high for up to 2 s`".to_owned()
             }
-            "repeat" if self.found == Token::Until => {
-                "write `while not (CONDITION) { .. }`, or `loop { .. if CONDITION { break } }`"
-                    .to_owned()
-            }
+            "repeat" if self.found == Token::Until => UNTIL.to_owned(),
             "until" if self.expectation.is_only("input") => return Some(self.wait_for_value()),
-            "speed" if is_number => {
+            "speed" if has_number => {
                 "a speed is a word: very slow, slow, normal, fast, very fast".to_owned()
             }
             "set" if self.found == Token::Speed => {
@@ -198,6 +239,14 @@ impl Unexpected<'_> {
             }
             _ => return None,
         }))
+    }
+
+    /// `wait for 3 s`
+    fn wait_for_time(&self) -> Option<Advice> {
+        let time = self.surroundings.after(self.span().end)?;
+        let line = self.surroundings.line_behind(time.span.start);
+        let help = format!("write `wait {}`", shortened(line.trim_end_matches([' ', ';'])));
+        Some(said(help).replacing(Span::new(self.span().start, time.span.start), ""))
     }
 
     /// `wait until x > 3`
@@ -249,6 +298,13 @@ impl Unexpected<'_> {
             Token::Until if wants("succeeds") => "stop if".to_owned(),
             Token::Name if wants("using") && text == "with" => "using".to_owned(),
             Token::Name if wants("move") && self.before() == "advanced" => format!("move {text}"),
+            Token::Name
+                if wants("throw")
+                    && wants("repeat")
+                    && matches!(text.as_str(), "again" | "redo") =>
+            {
+                "repeat with perturbation".to_owned()
+            }
             _ if wants("keyframe") && self.found.can_be_name() => format!("keyframe {text}"),
             Token::Assign | Token::Colon if self.wants_word() && self.goes_on() => {
                 let help = format!("leave out the `{text}`");
@@ -274,6 +330,11 @@ impl Unexpected<'_> {
                 let span = self.surroundings.before(self.span().start)?.span;
                 let turned = format!("{text}: {before}");
                 said(format!("write `{turned}`")).replacing(span.to(self.span()), &turned)
+            }
+            Token::OpenParenthesis | Token::OpenBrace | Token::OpenBracket
+                if before == "to" && self.expectation.is_name() =>
+            {
+                said("declare the position, `joints NAME = [..] deg`, and write `move to NAME`")
             }
             Token::Comma | Token::CloseParenthesis if wants(":") => {
                 said(format!("say its type: `{before}: length`"))
@@ -354,6 +415,12 @@ impl Unexpected<'_> {
         if DIRECTIONS.contains(&name) {
             return Some(said(format!("say how far before the direction: `move 20 mm {name}`")));
         }
+        if self.surroundings.declared_by(name) == Some(Token::Move) {
+            let verb = self.surroundings.before(placed.span.start)?;
+            let instead = format!("advance {name}");
+            let help = format!("write `{}`", shortened(&instead));
+            return Some(said(help).replacing(verb.span.to(placed.span), &instead));
+        }
         let help = format!("to go to a position write `move to {}`", shortened(name));
         Some(said(help).replacing(placed.span, &format!("to {name}")))
     }
@@ -401,6 +468,10 @@ impl Advice {
     fn replacing(self, span: Span, text: &str) -> Self {
         Self { suggestion: Some(Suggestion { span, text: text.to_owned() }), ..self }
     }
+}
+
+fn is_number(token: Token) -> bool {
+    matches!(token, Token::Integer | Token::Quantity | Token::Real)
 }
 
 fn said(help: impl Into<String>) -> Advice {

@@ -184,6 +184,7 @@ const VALUES: &[&str] = &[
     "REAL",
     "QUANTITY",
     "BAD QUANTITY",
+    "ABSENT",
     "true",
     "false",
     "not",

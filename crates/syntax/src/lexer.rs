@@ -1,17 +1,19 @@
 //! Source text to the tokens that the grammar reads: numbers joined with their units, assigned
 //! words told from others, what is foreign reported and replaced, what is too deep refused. It
-//! knows the text around a token, and nothing of the grammar.
+//! knows the text around a token, and nothing of the grammar. What is written as in another language
+//! is in `elsewhere`.
+
+mod elsewhere;
 
 use crate::ahead::{ascii_word_length, degree_sign, is_before_assignment, unit_length};
 use crate::codes::Code;
-use crate::diagnostic::{Diagnostic, Suggestion};
+use crate::diagnostic::Diagnostic;
 use crate::foreign;
-use crate::habits::{self, Habit, Then};
 use crate::nesting::{Nesting, Refusal};
 use crate::sink::{MAX_IDLE_TOKENS, Sink, Stopped};
 use crate::span::Span;
 use crate::surroundings::Surroundings;
-use crate::token::Token;
+use crate::token::{RESERVED_WORDS, Token};
 use crate::tree;
 use crate::{MAX_NESTING, MAX_OPERATORS};
 use logos::Logos;
@@ -102,6 +104,8 @@ impl<'s, 'k> Lexer<'s, 'k> {
                 self.foreign_comment();
                 None
             }
+            Token::ForeignNot if self.is_over() => self.comment_of_line(),
+            Token::Semicolon if self.is_comment() => self.comment_of_line(),
             _ => Some(self.sign(token)),
         }
     }
@@ -136,7 +140,10 @@ impl<'s, 'k> Lexer<'s, 'k> {
 
     /// A word that begins a statement, which clauses are none.
     fn statement_word(&mut self, token: Token) -> Option<Token> {
-        use Token::{Distance, Io, Move, Set, Sleep, Toggle, Wait};
+        use Token::{Distance, If, Io, Move, Set, Sleep, Toggle, Wait, While};
+        if matches!(token, If | Sleep | Wait | While) && self.is_of_another_language() {
+            return None;
+        }
         let Some((of, 1)) = self.clauses.filter(|_| self.begins_statement()) else {
             return Some(self.word(token));
         };
@@ -161,16 +168,20 @@ impl<'s, 'k> Lexer<'s, 'k> {
             return Some(meant);
         }
         self.sink.report(error.with_help(why));
-        let rest = self.rest();
-        self.leave_out(&rest[..rest.find(['\r', '\n']).unwrap_or(rest.len())], None)
+        self.leave_out(self.line(), None)
     }
 
     /// Whether a word that begins a declaration or a statement stands in a clause where it can only
     /// be a mistake. As a name it lets the parser go on with the next clause.
     fn is_astray(&self, token: Token) -> bool {
+        use Token::{Advanced, Cell, Cleanup, Error, Import, Item, Joints};
         self.clauses.is_some()
             && match token {
                 Token::Input | Token::Output => self.previous == Token::Name,
+                // No declaration begins there.
+                Advanced | Cell | Cleanup | Error | Import | Item | Joints => {
+                    self.is_same_line() && !self.follows_brace()
+                }
                 Token::With => self.previous != Token::Repeat,
                 _ => false,
             }
@@ -198,87 +209,20 @@ impl<'s, 'k> Lexer<'s, 'k> {
         };
     }
 
-    /// A name where a statement may begin: an assignment, or what another language begins one with.
-    fn first_word(&mut self) -> Option<Token> {
-        let (word, rest) = (self.tokens.slice(), self.rest());
-        if is_before_assignment(rest) || rest.starts_with(|c: char| !c.is_ascii()) {
-            return Some(self.word(Token::Name));
-        }
-        let line = &rest[..rest.find(['\r', '\n']).unwrap_or(rest.len())];
-        let goes_on = self.foreign_blocks > 0 && word.eq_ignore_ascii_case("else");
-        if goes_on || habits::ends_block(word) {
-            let is_awaited = self.foreign_blocks > 0;
-            self.foreign_blocks -= u32::from(is_awaited && !goes_on);
-            let habit = (!is_awaited).then(habits::end_of_block);
-            return self.leave_out(line, habit.as_ref());
-        }
-        let Some(habit) = habits::of(word, line) else {
-            // It can only be a mistake; after an earlier one the parser goes on here.
-            if !std::mem::replace(&mut self.has_stray_word, true) {
-                return Some(self.word(Token::Name));
-            }
-            self.pending = Some(Token::Name);
-            return Some(Token::Semicolon);
-        };
-        match habit.then {
-            Then::NextLine => self.leave_out(line, Some(&habit)),
-            Then::InBlock => {
-                self.foreign_blocks += 1;
-                self.leave_out(line, Some(&habit))
-            }
-            Then::As(first, second) => {
-                self.report_habit(word.len(), &habit);
-                self.pending = second;
-                Some(first)
-            }
-        }
-    }
-
-    /// Leave the rest of a line out, as far as a brace or a comment.
-    fn leave_out(&mut self, line: &str, habit: Option<&Habit>) -> Option<Token> {
-        let end = line.find(['{', '}']).unwrap_or(line.len());
-        let end = line.find("//").map_or(end, |comment| comment.min(end));
-        if let Some(habit) = habit {
-            let written = line[..end].trim_end().trim_end_matches(';');
-            self.report_habit(self.tokens.slice().len() + written.len(), habit);
-        }
-        self.tokens.bump(end);
-        if line[end..].is_empty() || line[end..].starts_with("//") {
-            self.sink.line_ends();
-        }
-        self.previous = Token::Semicolon;
-        self.previous_end = self.tokens.span().end;
-        None
-    }
-
-    /// A word of another language, and so many bytes from its beginning.
-    fn report_habit(&self, length: usize, habit: &Habit) {
-        let start = self.span().start;
-        let span = Span::new(start, start + length as u32);
-        let word = self.tokens.slice();
-        let is_capital =
-            habit.instead.as_ref().is_some_and(|instead| word.eq_ignore_ascii_case(instead));
-        let message = match is_capital {
-            true => format!("`{word}` is not written with capitals here"),
-            false => format!("`{word}` is a word of another language"),
-        };
-        let at = "not a statement of this language";
-        let mut diagnostic = Diagnostic::error(Code::ForeignWord, span, message, at);
-        diagnostic.help = Some(habit.help.clone());
-        diagnostic.suggestion = habit.instead.clone().map(|text| Suggestion { span, text });
-        self.sink.report(diagnostic);
-    }
-
     /// Whether a statement may begin with a name here, seen from the text alone: after a brace or
     /// `;`, or on a new line after what can end a statement and wants no name.
     fn begins_statement(&self) -> bool {
-        let is_new =
-            matches!(self.previous, Token::OpenBrace | Token::CloseBrace | Token::Semicolon);
+        let is_new = self.follows_brace();
         let is_name = self.previous.is_free() && self.before_previous.wants_name();
         // `++` is of no expression here.
         let is_step = (self.before_previous, self.previous) == (Token::Plus, Token::Plus);
         let is_over = is_name || is_step || self.previous.ends_statement();
         is_new || is_over && !self.is_same_line() && !self.nesting.is_in_expression()
+    }
+
+    /// Whether what is behind a brace or `;` begins here.
+    fn follows_brace(&self) -> bool {
+        matches!(self.previous, Token::OpenBrace | Token::CloseBrace | Token::Semicolon)
     }
 
     /// `for i from 0 to last step 2 {`: left out as far as the block.
@@ -364,7 +308,9 @@ impl<'s, 'k> Lexer<'s, 'k> {
             self.tokens.bump(blanks + length);
             return Token::Quantity;
         }
-        if Token::lexer(word).next() == Some(Ok(Token::Name)) {
+        let is_own_in_capitals = RESERVED_WORDS.contains(&word.to_lowercase().as_str())
+            || word.eq_ignore_ascii_case("then");
+        if Token::lexer(word).next() == Some(Ok(Token::Name)) && !is_own_in_capitals {
             self.tokens.bump(blanks + word.len());
             return Token::BadQuantity;
         }
@@ -374,7 +320,9 @@ impl<'s, 'k> Lexer<'s, 'k> {
     /// Whether `,5` follows where no list is.
     fn is_decimal_comma(&self) -> bool {
         let bytes = self.rest().as_bytes();
+        let is_in_list = matches!(self.previous, Token::OpenBrace | Token::Comma);
         !self.nesting.is_in_expression()
+            && !is_in_list
             && matches!(bytes, [b',', digit, ..] if digit.is_ascii_digit())
     }
 
@@ -420,35 +368,15 @@ impl<'s, 'k> Lexer<'s, 'k> {
         if self.tokens.slice() == "°" && self.previous == Token::CloseBracket {
             return Some(self.unit());
         }
+        let length = ascii_word_length(self.rest());
+        if self.tokens.slice() == "$" && length > 0 {
+            self.tokens.bump(length);
+            return self.controller_variable();
+        }
         let foreign = foreign::read(self.tokens.slice(), self.rest());
         self.tokens.bump(foreign.length);
         self.sink.report(foreign::diagnostic(self.tokens.slice(), self.span()));
         foreign.meant
-    }
-
-    /// `(i = 0; i < 10; i++)`: left out as far as its line goes.
-    fn foreign_loop(&mut self) {
-        let mut depth = 1;
-        let end = self.rest().find(|c: char| {
-            depth += i32::from(c == '(') - i32::from(c == ')');
-            depth == 0 || matches!(c, '\r' | '\n' | '{' | '}')
-        });
-        let is_closed = end.is_some_and(|end| self.rest()[end..].starts_with(')'));
-        let length = end.unwrap_or(self.rest().len());
-        self.tokens.bump(length + usize::from(is_closed));
-        self.report(Code::ForeignLoop, "a loop that counts is not written like this", |_| {
-            Some("write `for i from 0 to 9 { .. }`; both ends are included".to_owned())
-        });
-    }
-
-    fn foreign_comment(&mut self) {
-        let help = "a comment begins with `//` and ends with the line";
-        self.report(Code::UnexpectedCharacter, "comments are not written like this", |_| {
-            Some(help.to_owned())
-        });
-        let rest = self.rest();
-        let line = rest.find(['\r', '\n']).unwrap_or(rest.len());
-        self.tokens.bump(rest.find("*/").map_or(line, |end| end + "*/".len()));
     }
 
     fn report(&self, code: Code, message: &str, help: impl FnOnce(&str) -> Option<String>) {
@@ -524,6 +452,12 @@ impl<'s, 'k> Lexer<'s, 'k> {
         self.tokens.remainder()
     }
 
+    /// What is behind the token on its line.
+    fn line(&self) -> &'s str {
+        let rest = self.rest();
+        &rest[..rest.find(['\r', '\n']).unwrap_or(rest.len())]
+    }
+
     fn next_byte(&self) -> Option<u8> {
         self.source.as_bytes().get(self.tokens.span().end).copied()
     }
@@ -553,13 +487,13 @@ impl Iterator for Lexer<'_, '_> {
                     let Some(raw) = self.tokens.next() else {
                         return self.missing_brace().map(Ok);
                     };
+                    if self.sink.awaits_line_end() && self.between().contains(['\n', '\r']) {
+                        self.sink.line_ends();
+                    }
                     let Some(token) = self.refine(raw) else { continue };
                     token
                 }
             };
-            if self.sink.awaits_line_end() && self.between().contains(['\n', '\r']) {
-                self.sink.line_ends();
-            }
             match self.nesting.observe(token) {
                 Ok(()) => {}
                 Err(refusal) => {

@@ -83,7 +83,9 @@ fn blanks_comments_and_line_ends_are_passed_over() {
 fn foreign_signs_are_reported_and_replaced() {
     let cases = [("&&", And), ("||", Or), ("!", Not), ("%", Mod), (":=", Assign), ("<>", NotEqual)];
     for (sign, meant) in cases {
-        assert_eq!(lex(sign), (vec![(meant, sign)], vec![Code::ForeignOperator]));
+        let source = format!("if {sign}");
+        let tokens = vec![(If, "if"), (meant, sign)];
+        assert_eq!(lex(&source), (tokens, vec![Code::ForeignOperator]));
     }
     assert_eq!(tokens("!="), [NotEqual]);
 }
@@ -96,6 +98,10 @@ fn foreign_characters_are_reported_and_replaced() {
     assert_eq!(lex("ö1 b"), (vec![(Name, "ö1"), (Name, "b")], vec![code]));
     assert_eq!(lex("“a b” c"), (vec![(Text, "“a b”"), (Name, "c")], vec![code]));
     assert_eq!(lex("'a b' c"), (vec![(Text, "'a b'"), (Name, "c")], vec![code]));
+    assert_eq!(lex("! a b\nc"), (vec![(Name, "c")], vec![code]));
+    assert_eq!(lex("c ! a b"), (vec![(Name, "c")], vec![code]));
+    assert_eq!(lex("; a b\nc"), (vec![(Name, "c")], vec![code]));
+    assert_eq!(lex("c; a = 3").1, []);
     assert_eq!(lex("# a b\nc"), (vec![(Name, "c")], vec![code]));
     assert_eq!(lex("/* a\nb */ c"), (vec![(Name, "c")], vec![code]));
     assert_eq!(lex("/* a\nb"), (vec![(Name, "b")], vec![code]));

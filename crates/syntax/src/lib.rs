@@ -9,6 +9,7 @@ mod ahead;
 pub mod ast;
 pub mod codes;
 pub mod diagnostic;
+mod elsewhere;
 mod expectation;
 pub mod expected;
 mod foreign;
@@ -29,6 +30,7 @@ mod surroundings;
 mod token;
 mod tree;
 
+pub use elsewhere::value_elsewhere;
 pub use imports::imports;
 pub use left_out::LeftOut;
 pub use nearest::nearest;

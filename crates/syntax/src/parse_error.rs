@@ -3,7 +3,7 @@
 
 use crate::advice::Unexpected;
 use crate::codes::Code;
-use crate::diagnostic::{Diagnostic, Label};
+use crate::diagnostic::{Diagnostic, Label, Suggestion};
 use crate::expectation::Expectation;
 use crate::nearest::nearest;
 use crate::sink::{MAX_MISTAKES, SyntaxError};
@@ -38,6 +38,7 @@ pub(crate) fn explain(
         }
     }
     leave_out_consequences(source, &mut diagnostics, worded, errors);
+    name_arguments(source, start, &mut diagnostics);
     blame_one_brace(&mut diagnostics);
     blame_brace_too_many(source, start, &mut diagnostics);
     diagnostics.sort_by_key(|diagnostic| diagnostic.primary.span);
@@ -67,7 +68,9 @@ fn leave_out_consequences(
     worded: usize,
     errors: &[SyntaxError],
 ) {
-    let is_of_lexer = |code| matches!(code, Code::ForeignOperator | Code::UnexpectedCharacter);
+    let is_of_lexer = |code| {
+        matches!(code, Code::ForeignOperator | Code::UnexpectedCharacter | Code::ForeignWord)
+    };
     let mut index = 0;
     diagnostics.retain(|diagnostic| {
         index += 1;
@@ -81,6 +84,25 @@ fn leave_out_consequences(
         };
         index > worded || !is_of_lexer(diagnostic.code) || !errors.iter().any(|e| is_behind(&e))
     });
+}
+
+/// `call place(what = vial)`: what assigns there was meant to name an argument.
+fn name_arguments(source: &str, start: usize, diagnostics: &mut [Diagnostic]) {
+    let is_assigned = |one: &&mut Diagnostic| one.code == Code::AssignmentAsComparison;
+    let mut assigned = diagnostics.iter_mut().filter(is_assigned).peekable();
+    if assigned.peek().is_none() {
+        return;
+    }
+    let surroundings = Surroundings::new(source, start);
+    for diagnostic in assigned {
+        let sign = diagnostic.primary.span;
+        let Some(name) = surroundings.named_argument(sign.start) else { continue };
+        diagnostic.message = "an argument is not given by `=`".to_owned();
+        diagnostic.primary.text = "assigns".to_owned();
+        diagnostic.help = Some(format!("write `{}: ..`", shortened(surroundings.text(name))));
+        diagnostic.suggestion =
+            Some(Suggestion { span: Span::new(name.end, sign.end), text: ":".to_owned() });
+    }
 }
 
 /// A brace too many ends a sequence early, and what follows stands outside: what is reported is the

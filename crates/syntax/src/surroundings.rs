@@ -55,22 +55,45 @@ impl<'s> Surroundings<'s> {
         self.tokens.get(first..first + 2)?.try_into().ok()
     }
 
-    /// The words of the declaration that gives a name, if one at the top of the text does.
+    /// The tokens of the line of an offset that begin before it.
+    pub(crate) fn line_before(&self, offset: u32) -> &[Placed] {
+        let start = self.until(self.line_start(offset)).len();
+        &self.until(offset)[start..]
+    }
+
+    /// What stands from an offset to the end of its line, without a comment.
+    pub(crate) fn line_behind(&self, offset: u32) -> &'s str {
+        let rest = self.source.get(offset as usize..).unwrap_or("");
+        let line = rest.lines().next().unwrap_or("");
+        line.split("//").next().unwrap_or("")
+    }
+
+    /// The word of the declaration that gives a name, if one at the top of the text does.
     pub(crate) fn declared_by(&self, name: &str) -> Option<Token> {
         let mut open = Vec::new();
         let mut before = None;
         for token in &self.tokens {
-            if open.is_empty()
-                && token.token.is_word()
-                && self.text(token.span) == name
-                && before.is_some()
-            {
+            let is_named = token.token.is_word() && self.text(token.span) == name;
+            if open.is_empty() && is_named && before.is_some_and(declares) {
                 return before;
             }
             follow(&mut open, *token);
             before = Some(token.token);
         }
         None
+    }
+
+    /// The name of the argument of a `call` that stands before an offset, behind its bracket or a
+    /// comma.
+    pub(crate) fn named_argument(&self, offset: u32) -> Option<Span> {
+        let name = self.before(offset)?;
+        let sign = self.before(name.span.start)?;
+        let opening = self.innermost_open(offset)?;
+        let called = self.before(opening.span.start)?;
+        let verb = self.before(called.span.start)?;
+        let is_first = matches!(sign.token, Token::OpenParenthesis | Token::Comma);
+        let is_call = opening.token == Token::OpenParenthesis && verb.token == Token::Call;
+        (is_first && is_call && name.token.is_word()).then_some(name.span)
     }
 
     /// Whether nothing but blanks stands before an offset on its line.
@@ -168,6 +191,12 @@ pub(crate) fn shortened(text: &str) -> String {
         Some((end, _)) => format!("{}..", &line[..end]),
         None => line.to_owned(),
     }
+}
+
+/// Whether the name of what is declared follows a word; of `advanced move NAME` it is `move`.
+fn declares(word: Token) -> bool {
+    use Token::{Action, Error, Input, Io, Item, Joints, Move, Output, Sequence, Var};
+    matches!(word, Action | Error | Input | Io | Item | Joints | Move | Output | Sequence | Var)
 }
 
 /// Keeps account of the open brackets; gives the one that the token closes. A bracket of another

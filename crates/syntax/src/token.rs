@@ -32,6 +32,8 @@ macro_rules! tokens {
             BadQuantity,
             /// A unit after `]`.
             Unit,
+            /// A value of another language, which has been reported.
+            Absent,
 
             // What the lexer reports and replaces or leaves out.
             #[regex(r"[0-9]+\.|\.[0-9]+([eE][+-]?[0-9]+)?")]

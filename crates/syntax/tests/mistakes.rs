@@ -137,6 +137,94 @@ fn habits_from_other_languages_are_named() {
 }
 
 #[test]
+fn what_is_nearly_right_is_put_right() {
+    let declarations = "io grip { set 0 high }\nadvanced move press { distance 1 mm up }\n\
+                        action place(what: item) { break }\nitem vial { }\n";
+    let cases = [
+        ("move press", "advance press", "write `advance press`"),
+        ("wait for 3 s", "wait 3 s", "write `wait 3 s`"),
+        ("io grip()", "io grip", "nothing is given to it: write `io grip`"),
+        (
+            "call place vial",
+            "call place(vial)",
+            "what is given stands in parentheses: `call place(vial)`",
+        ),
+        ("call place(what = vial)", "call place(what: vial)", "write `what: ..`"),
+        ("if force => 3 N { break }", "if force >= 3 N { break }", "write `>=`"),
+        ("if force =< 3 N { break }", "if force <= 3 N { break }", "write `<=`"),
+        ("if NOT input 2 { break }", "if not input 2 { break }", "write `not`"),
+        (
+            "wait until input 2 for up to 2 s",
+            "wait until input 2 high for up to 2 s",
+            "say which level: `wait until input 3 high for up to 2 s`",
+        ),
+    ];
+    for (written, meant, help) in cases {
+        let source = format!("{declarations}sequence main {{\n{written}\nbreak\n}}");
+        let found = mistake(&source);
+        assert_eq!(found.help.as_deref(), Some(help), "{written}");
+        let change = found.suggestion.expect("a change of the text");
+        let (start, end) = (change.span.start as usize, change.span.end as usize);
+        let mended = [&source[..start], &change.text, &source[end..]].concat();
+        assert!(mended.contains(&format!("\n{meant}\n")), "{written} becomes {mended}");
+    }
+}
+
+#[test]
+fn places_in_brackets_are_declared() {
+    let help = "declare the position, `joints NAME = [..] deg`, and write `move to NAME`";
+    for source in ["move to {0,0,0,0}", "move to [0, -90, 0] deg", "move to (0, 0)"] {
+        assert_eq!(in_sequence(source).0.help.as_deref(), Some(help), "{source}");
+    }
+}
+
+#[test]
+fn what_is_done_again_is_said_by_its_words() {
+    for word in ["retry", "again"] {
+        let help = mistake(&format!("advanced move a {{ on failure {{ {word} 3 times }} }}")).help;
+        assert!(help.is_some_and(|help| help.contains("repeat with perturbation")), "{word}");
+    }
+}
+
+#[test]
+fn a_path_stands_in_quotes() {
+    let diagnostic = mistake("import poses.obv\nsequence main { break }");
+    assert_eq!(diagnostic.help.as_deref(), Some("a path stands in quotes: `import \"poses.obv\"`"));
+    assert_eq!(diagnostic.suggestion.map(|change| change.text).as_deref(), Some("\"poses.obv\""));
+}
+
+#[test]
+fn each_line_of_other_languages_is_told() {
+    let source = "sequence main {\n  PULSE($OUT[1],TRUE,0.5)\n  SWITCH n\n  ENDSWITCH\n\
+                  $VEL.CP=0.05\n  FOR n=1 TO 5\n    PTP P1\n  ENDFOR\n  frob($IN[2], 3)\n  LIN P2\n}";
+    let words: Vec<&str> = mistakes(source).into_iter().map(|(_, text)| text).collect();
+    let expected = [
+        "PULSE($OUT[1],TRUE,0.5)",
+        "SWITCH n",
+        "$VEL.CP=0.05",
+        "FOR n=1 TO 5",
+        "PTP P1",
+        "frob",
+        "LIN P2",
+    ];
+    assert_eq!(words, expected);
+}
+
+#[test]
+fn a_word_that_declares_is_no_declaration_within_a_clause() {
+    let source = "error jam {\n severity error\n recover by reversing 2 steps\n then retry\n}\n\
+                  sequence main { break }";
+    let words: Vec<&str> = mistakes(source).into_iter().map(|(_, text)| text).collect();
+    assert_eq!(words, ["error", "steps", "retry"]);
+}
+
+#[test]
+fn what_a_program_declares_is_no_word_of_another_language() {
+    let source = "sequence load { break }\nsequence main {\n  load\n  break\n}";
+    assert_eq!(mistake(source).help.as_deref(), Some("write `call load`"));
+}
+
+#[test]
 fn loops_of_other_languages_are_one_mistake() {
     let loops = [
         "for (i = 0; i < 10; i++) { sleep 1 s }",

@@ -145,7 +145,22 @@ fn what_is_as_deep_as_allowed_is_read() {
 
 #[test]
 fn long_texts_without_sense_are_read_in_time() {
-    for piece in ["1 ", "a ", "} ", ") ", "else ", "= ", "\" ", "[ ] ", "if ", "x = ", "// \n"] {
+    for piece in [
+        "1 ",
+        "a ",
+        "} ",
+        ") ",
+        "else ",
+        "= ",
+        "\" ",
+        "[ ] ",
+        "if ",
+        "x = ",
+        "x = 1; ",
+        "if x { } ",
+        "; x ",
+        "// \n",
+    ] {
         codes(&piece.repeat(30_000));
         codes(&format!("sequence main {{{}", piece.repeat(30_000)));
     }

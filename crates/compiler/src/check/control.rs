@@ -6,7 +6,7 @@ use super::frame::Around;
 use super::names::Meaning;
 use super::operators::binary;
 use super::statement::Checked;
-use crate::tree::{Block, Expression, Prepared, Statement, StatementKind};
+use crate::tree::{Block, Expression, ExpressionKind, Prepared, Statement, StatementKind};
 use crate::types::ValueType;
 use obverse_isa::{CounterId, Instr};
 use obverse_syntax::ast::{self, Name, StatementKind as Written};
@@ -99,7 +99,11 @@ impl<'s> Checker<'s> {
     ) -> (Statement, bool) {
         let header = Span::new(start, condition.span.end);
         let condition = self.prepared_condition(condition);
-        self.warn_of_constant(&condition.value, "a loop for ever is written `loop { .. }`");
+        let help = match condition.value.kind {
+            ExpressionKind::Bool(false) => "leave it out, with the block that is never run",
+            _ => "a loop for ever is written `loop { .. }`",
+        };
+        self.warn_of_constant(&condition.value, help);
         let entered = entered_when.map(|written| self.assertion(written, "`entered when`"));
         let (body, _) = self.body(body, header);
         if let (Some(written), false) = (entered_when, body.falls_through) {

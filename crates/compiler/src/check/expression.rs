@@ -1,9 +1,9 @@
 //! Expressions: names, literals and readings, and whether a value is what is needed.
 
-use super::Checker;
 use super::control::complement;
 use super::frame::Readings;
 use super::names::{Found, Meaning};
+use super::{A_VALUE, Checker};
 use crate::tree::{Expression, ExpressionKind, Hoist, Prepared};
 use crate::types::ValueType;
 use crate::units::Unit;
@@ -173,9 +173,12 @@ impl<'s> Checker<'s> {
                 self.unary_operator(*operator, operand, span)
             }
             ast::ExpressionKind::Binary { operator, left, right } => {
-                let left = self.expression(left);
+                let value = self.expression(left);
+                if self.is_compared_with_level(*operator, (&value, left), right) {
+                    return Expression::missing(span);
+                }
                 let right = self.expression(right);
-                self.binary_operator(*operator, left, right, span)
+                self.binary_operator(*operator, value, right, span)
             }
             ast::ExpressionKind::Function { name, arguments } => {
                 self.function_call(*name, arguments, span)
@@ -277,7 +280,7 @@ impl<'s> Checker<'s> {
                 Joints(_) | Item(_) | Global(..) | Local(..) | Counter(_) | CountDown(_)
             )
         };
-        let Some(meaning) = self.resolve(name, "a value", is_value) else {
+        let Some(meaning) = self.resolve(name, A_VALUE, is_value) else {
             return Expression::missing(name.span);
         };
         let (kind, of_type) = match meaning {

@@ -12,6 +12,7 @@ mod frame;
 mod function;
 mod guarded;
 mod incident;
+mod levels;
 mod motion;
 mod names;
 mod operators;
@@ -39,6 +40,7 @@ use obverse_syntax::codes::Code;
 use obverse_syntax::diagnostic::Diagnostic;
 use obverse_syntax::sources::Sources;
 use obverse_syntax::span::Span;
+use obverse_syntax::value_elsewhere;
 use parameters::Range;
 use std::collections::{BTreeSet, HashMap};
 use still::Movers;
@@ -48,6 +50,9 @@ pub(crate) use program::{Checked, check};
 
 /// More names than these are not listed where none of them is near the one that is written.
 const MAX_LISTED: usize = 6;
+
+/// What is needed where an expression names something, in words.
+const A_VALUE: &str = "a value";
 
 /// What a caller knows of a function.
 #[derive(Clone, Debug, Default)]
@@ -200,9 +205,14 @@ impl<'s> Checker<'s> {
         let mut diagnostic =
             Diagnostic::error(Code::UnknownName, name.span, message, "declared nowhere");
         let meant = self.reports.meant(name.value, self.names.candidates(wanted));
-        if let Some(meant) = meant {
+        let small = name.value.to_lowercase();
+        if needed == A_VALUE && matches!(small.as_str(), "true" | "false" | "holding") {
+            diagnostic = diagnostic.write_instead(name.span, &small);
+        } else if let Some(meant) = meant {
             diagnostic = diagnostic.did_you_mean(name.span, meant);
             self.names.mark_used(meant);
+        } else if let Some(help) = value_elsewhere(name.value).filter(|_| needed == A_VALUE) {
+            diagnostic = diagnostic.with_help(help);
         } else if !self.reports.is_full() {
             let there = self.names.candidates(wanted).take(MAX_LISTED + 1);
             let there: Vec<String> = there.map(|name| format!("`{name}`")).collect();

@@ -12,6 +12,7 @@ use obverse_syntax::ast::{self, BinaryOperator, UnaryOperator};
 use obverse_syntax::codes::Code;
 use obverse_syntax::diagnostic::Diagnostic;
 use obverse_syntax::span::Span;
+use obverse_syntax::value_elsewhere;
 
 /// The functions of expressions and how many arguments each takes.
 pub(crate) const FUNCTIONS: [(&str, usize); 7] =
@@ -388,7 +389,7 @@ impl<'s> Checker<'s> {
         let mut diagnostic =
             Diagnostic::error(Code::UnknownFunction, name.span, message, "not a function")
                 .with_note(format!("the functions are {}", names.join(", ")));
-        if let Some(help) = foreign_function(name.value) {
+        if let Some(help) = value_elsewhere(name.value) {
             diagnostic = diagnostic.with_help(help);
         } else if let Some(meant) = self.reports.meant(name.value, names.into_iter()) {
             diagnostic = diagnostic.did_you_mean(name.span, meant);
@@ -490,22 +491,4 @@ pub(super) fn binary(
     let folded = fold::binary(instr, &left.kind, &right.kind);
     let kind = folded.unwrap_or_else(|| ExpressionKind::Binary(instr, Box::new((left, right))));
     Expression { kind, of_type, span }
-}
-
-/// What is written here in place of a function of another language.
-fn foreign_function(name: &str) -> Option<&'static str> {
-    let plain: String =
-        name.chars().filter(|c| *c != '_').map(|c| c.to_ascii_lowercase()).collect();
-    Some(match plain.as_str() {
-        "getdigitalin" | "getstandarddigitalin" | "gettooldigitalin" | "di" | "testdi" => {
-            "an input is read by its number: `input 3`"
-        }
-        "force" | "gettcpforce" | "getforce" => "the contact force is read by `force`",
-        "rand" | "rnd" => "write `random(low, high)`",
-        "float" | "double" | "number" => "write `real(n)`",
-        "round" | "trunc" | "floor" | "integer" => "write `int(x)`, which rounds towards zero",
-        "mod" | "fmod" => "write `a mod b`",
-        "pow" | "power" => "multiply: `a * a`",
-        _ => return None,
-    })
 }

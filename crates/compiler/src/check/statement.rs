@@ -253,6 +253,9 @@ impl<'s> Checker<'s> {
         operator: AssignOperator,
         written: &ast::Expression<'s>,
     ) -> Option<StatementKind> {
+        if self.is_output_assigned(name, written) {
+            return None;
+        }
         let Some((place, of_type)) = self.assigned(name) else {
             // `speed = slow` is one mistake.
             if !matches!(name.value, "speed" | "tool") {

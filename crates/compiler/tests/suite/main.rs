@@ -5,6 +5,7 @@ mod allow;
 mod codes;
 mod common;
 mod diagnostics;
+mod elsewhere;
 mod errors;
 mod expressions;
 mod flow;
