@@ -2,37 +2,28 @@
 //! give-up that has a name, with the arm held; nothing goes back over what cannot be taken back;
 //! and where it ended it can be gone back from.
 //!
-//! Every program is run with a stop of every kind at drawn acts, in either direction. `SAFE_RUNS`
-//! sets how many runs there are of each program, over all strategies.
+//! Every program is run with faults of every kind that there is at drawn acts, in either direction,
+//! also while a recovery is under way. `SAFE_RUNS` sets how many runs there are of each program,
+//! over all strategies.
 
 use obverse_bytecode::{FaultName, Verified, verify};
 use obverse_compiler::compile_files;
-use obverse_isa::Class;
+use obverse_isa::{Class, Family};
 use obverse_recovery::{
     Bounds, Clairvoyant, Ending, Memory, Operator, Recovery, Step, Strategy, Teller, drive, recover,
 };
 use obverse_sim::random::{Stream, bits};
-use obverse_sim::{Cell, FaultPlan, Sim, StopKind};
+use obverse_sim::{Cell, FaultPlan, Sim};
+use obverse_testkit::faulty::Faulty;
 use obverse_testkit::files::Folder;
+use obverse_testkit::recovery_laws::{STRATEGIES, acts_in_place};
 use obverse_vm::{Direction, Event, Limits, Machine, Observer};
-use obverse_workcell::{Fault, Safety, Workcell};
+use obverse_workcell::{Fault, FaultKind, Safety, Workcell};
+use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
 /// How many runs of each program there are, unless said otherwise.
 const RUNS: u64 = 120;
-
-const STRATEGIES: [Strategy; 10] = [
-    Strategy::Declared,
-    Strategy::Stop,
-    Strategy::Retry { times: 3 },
-    Strategy::BackUp { distance_m: 0.30, times: 6 },
-    Strategy::Restart { times: 3 },
-    Strategy::Explicit,
-    Strategy::Fixed { actions: 3 },
-    Strategy::Escalating,
-    Strategy::Learned,
-    Strategy::Oracle,
-];
 
 /// Every program for people, at whatever depth, with its workcell.
 fn programs(folder: &Path, found: &mut Vec<PathBuf>) {
@@ -66,10 +57,10 @@ fn load(path: &Path) -> Program {
     let compiled = compile_files(&name, &text, &mut files);
     let mut module =
         compiled.module.unwrap_or_else(|| panic!("{name}: {:#?}", compiled.diagnostics));
-    // Where a program has an error and names no fault, its first one is raised by some.
+    // Where a program has an error and names no fault, its first one is raised by all of them.
     let names_faults = module.errors.iter().any(|error| !error.faults.is_empty());
     if let (false, Some(error)) = (names_faults, module.errors.first_mut()) {
-        error.faults = vec![FaultName::ProtectiveStop, FaultName::StoppedShort];
+        error.faults = FaultName::ALL.to_vec();
     }
     let cell = folder.join(module.cell.as_ref().unwrap());
     let cell = Cell::parse(&std::fs::read_to_string(cell).unwrap()).unwrap();
@@ -88,15 +79,26 @@ impl Operator for Releases {
     }
 }
 
-/// Watches that nothing goes back over what cannot be taken back.
-#[derive(Default)]
-struct Guard {
+/// A kind of fault, what the act was that met it, and which way.
+type Met = (FaultKind, Family, bool);
+
+/// Watches that nothing goes back over what cannot be taken back, and which faults are met where.
+struct Guard<'p> {
+    program: &'p Program,
     /// How many instructions lay before what was passed last that cannot be taken back.
     floor_steps: u64,
     crossed: Option<u32>,
+    met: BTreeSet<Met>,
 }
 
-impl Observer for Guard {
+impl Guard<'_> {
+    fn meet(&mut self, fault: &Fault, pc: u32, direction: Direction) {
+        let instr = self.program.verified.module().code[pc as usize];
+        self.met.insert((fault.kind(), instr.info().family, direction == Direction::Reverse));
+    }
+}
+
+impl Observer for Guard<'_> {
     fn on_event(&mut self, event: &Event, _: &dyn Workcell) {
         let is_never = matches!(event.instr.info().class, Class::Never(_));
         match event.direction {
@@ -109,29 +111,34 @@ impl Observer for Guard {
     }
 }
 
-impl Teller for Guard {
-    fn on_step(&mut self, _: &Step<'_>, _: &dyn Workcell) {}
+impl Teller for Guard<'_> {
+    fn on_step(&mut self, step: &Step<'_>, _: &dyn Workcell) {
+        match step {
+            Step::Fault { fault, pc, .. } => self.meet(fault, *pc, Direction::Forward),
+            Step::Blocked { fault, pc, .. } => self.meet(fault, *pc, Direction::Reverse),
+            _ => {}
+        }
+    }
 }
 
-/// One run, with stops at drawn acts.
-fn run(program: &Program, number: u64, memory: &mut Memory) {
+/// One run, with faults at drawn acts; which of them were met where.
+fn run(program: &Program, number: u64, memory: &mut Memory) -> BTreeSet<Met> {
     let draw = |what: u64| bits(number, Stream::Dice, what);
     let strategy = STRATEGIES[(number % STRATEGIES.len() as u64) as usize];
-    let mut sim = Sim::new(&program.cell, draw(0));
-    let mut stops = Vec::new();
-    for stop in 0..1 + draw(1) % 3 {
-        let kinds = [StopKind::Protective, StopKind::Emergency, StopKind::Short];
-        let kind = kinds[(draw(10 + stop) % 3) as usize];
-        let fraction = (draw(20 + stop) % 11) as f64 / 10.0;
-        let plan = FaultPlan { act: draw(30 + stop) % 60, fraction };
-        sim.inject_as(plan, kind);
-        stops.push((kind, plan));
+    let mut cell = Faulty::new(Sim::new(&program.cell, draw(0)));
+    let mut faults = Vec::new();
+    for fault in 0..1 + draw(1) % 4 {
+        let kind = FaultKind::ALL[(draw(10 + fault) % FaultKind::ALL.len() as u64) as usize];
+        let fraction = (draw(20 + fault) % 11) as f64 / 10.0;
+        let plan = FaultPlan { act: draw(30 + fault) % 60, fraction };
+        cell.plan(kind, plan);
+        faults.push((kind, plan));
     }
     let releases = draw(2) % 4;
     let case =
-        || format!("{} {number}: {strategy:?}, {stops:?}, {releases} releases", program.name);
-    let mut machine = Machine::new(&program.verified, &sim).unwrap();
-    let mut guard = Guard::default();
+        || format!("{} {number}: {strategy:?}, {faults:?}, {releases} releases", program.name);
+    let mut machine = Machine::new(&program.verified, &cell).unwrap();
+    let mut guard = Guard { program, floor_steps: 0, crossed: None, met: BTreeSet::new() };
     let mut recovery = Recovery {
         strategy,
         bounds: Bounds::default(),
@@ -144,7 +151,7 @@ fn run(program: &Program, number: u64, memory: &mut Memory) {
         incidents: Vec::new(),
     };
     let limits = Limits::instructions(2_000_000);
-    let ending = recover(&mut machine, limits, &mut sim, &mut recovery, &mut guard);
+    let ending = recover(&mut machine, limits, &mut cell, &mut recovery, &mut guard);
     let incidents = recovery.incidents;
     let is_named = matches!(
         ending,
@@ -158,24 +165,58 @@ fn run(program: &Program, number: u64, memory: &mut Memory) {
         let most = most.unwrap_or(Bounds::default().attempts) as usize;
         assert!(incident.attempts.len() <= most, "{}: {incident:?}", case());
     }
-    go_back(&mut machine, &mut sim, &case);
+    if let Ending::Fault { fault, pc, direction } = &ending {
+        guard.meet(fault, *pc, *direction);
+    }
+    go_back(&mut machine, &mut cell, strategy, &mut guard, &case);
+    guard.met
+}
+
+/// Whether something in the world is in the way, where the arm was moved in place or by hand.
+fn is_in_the_way(fault: &Fault, strategy: Strategy) -> bool {
+    match fault.kind() {
+        FaultKind::Collision | FaultKind::ForceLimit => true,
+        FaultKind::JointLimit | FaultKind::OutOfReach | FaultKind::Singular => {
+            acts_in_place(strategy)
+        }
+        _ => false,
+    }
 }
 
 /// From wherever a run ended there is a way back: released whenever it is stopped.
-fn go_back(machine: &mut Machine<'_>, sim: &mut Sim, case: &dyn Fn() -> String) {
-    let mut blocked = 0;
-    loop {
-        sim.release();
-        match drive(machine, Direction::Reverse, Limits::NONE, sim, &mut ()) {
+fn go_back(
+    machine: &mut Machine<'_>,
+    cell: &mut Faulty,
+    strategy: Strategy,
+    guard: &mut Guard<'_>,
+    case: &dyn Fn() -> String,
+) {
+    let mut in_the_way = None;
+    // More often than there are planned faults left.
+    for _ in 0..6 {
+        cell.release();
+        match drive(machine, Direction::Reverse, Limits::NONE, cell, &mut ()) {
             Ending::AtStart | Ending::Refused(_) => return,
-            // What stands in the way in the world, where the arm was moved in place or by hand.
-            Ending::Fault { fault: Fault::Collision { .. } | Fault::ForceLimit { .. }, .. } => {
-                return;
+            Ending::Fault { fault, pc, direction } => {
+                guard.meet(&fault, pc, direction);
+                in_the_way = Some(fault);
             }
-            Ending::Fault { .. } if blocked < 8 => blocked += 1,
             other => panic!("{}: back: {other:?}", case()),
         }
     }
+    let is_world = in_the_way.as_ref().is_some_and(|fault| is_in_the_way(fault, strategy));
+    assert!(is_world, "{}: back: {in_the_way:?}", case());
+}
+
+/// So many runs of each program; which faults were met where.
+fn run_all(paths: &[PathBuf], runs: u64) -> BTreeSet<Met> {
+    let mut met = BTreeSet::new();
+    for path in paths {
+        let program = load(path);
+        let mut memory = Memory::default();
+        (0..runs).for_each(|number| met.extend(run(&program, number, &mut memory)));
+    }
+    met
 }
 
 #[test]
@@ -184,16 +225,21 @@ fn every_run_ends_well_or_in_a_named_give_up() {
     let mut found = Vec::new();
     programs(Path::new("programs"), &mut found);
     assert!(found.len() >= 10, "{found:?}");
+    let half = found.len() / 2;
+    let mut met = BTreeSet::new();
     std::thread::scope(|scope| {
-        let half = found.len() / 2;
-        for part in [&found[..half], &found[half..]] {
-            scope.spawn(move || {
-                for path in part {
-                    let program = load(path);
-                    let mut memory = Memory::default();
-                    (0..runs).for_each(|number| run(&program, number, &mut memory));
-                }
-            });
-        }
+        let parts = [&found[..half], &found[half..]];
+        let parts = parts.map(|part| scope.spawn(move || run_all(part, runs)));
+        parts.into_iter().for_each(|part| met.extend(part.join().expect("its runs end well")));
     });
+    if runs >= RUNS {
+        for kind in FaultKind::ALL {
+            for family in [Family::Kinematic, Family::Io] {
+                for is_reverse in [false, true] {
+                    let place = (*kind, family, is_reverse);
+                    assert!(met.contains(&place), "nowhere met: {place:?}");
+                }
+            }
+        }
+    }
 }

@@ -34,7 +34,8 @@ const EXIT_CODES: &str = "\
 Exit codes:
   0  done; for `run`, the program ended with no error pending; for `back`, the run went back
      as far as the program lets it; for `check`, no move is found to fail
-  1  the run ended otherwise: an error pending, a fault of the workcell, a trap, the limit;
+  1  the run ended otherwise: an error pending, a fault of the workcell, a trap, the limit, or an
+     assembly that is not as the workcell file says;
      for `check`, a move fails, the check of the moves could not be done as a whole, or there is
      a warning that `--deny` names; for `fmt --check`, a file would change; for `invert`, the
      sequence has no inverse

@@ -6,7 +6,7 @@ use crate::report::{self, Report};
 use crate::story::{self, Story};
 use crate::{files, write};
 use obverse_bytecode::Module;
-use obverse_recovery::{Incident, Memory, Operator, Outcome, Step, Strategy, Teller, Why};
+use obverse_recovery::{GiveUp, Incident, Memory, Operator, Outcome, Step, Strategy, Teller, Why};
 use obverse_vm::Alteration;
 use obverse_workcell::{Fault, Workcell};
 use serde_json::{Value, json};
@@ -211,6 +211,12 @@ fn words(module: &Module, step: &Step<'_>) -> String {
             let far = far.map(|actions| format!(", {} back", counted(actions, "action")));
             let far = far.unwrap_or_default();
             format!("past {} after {tried}{far}, {took_s:.2} s", name(module, incident))
+        }
+        Step::GivenUp { incident, why: GiveUp::Explicit } => {
+            let sequence = obverse_recovery::sequence(&module.errors[incident.error.index()]);
+            let function = sequence.and_then(|sequence| module.functions.get(sequence.index()));
+            let sequence = function.map_or("", |function| &function.name);
+            format!("{}: as the program says, {sequence}", name(module, incident))
         }
         Step::GivenUp { incident, why } => {
             format!("{} is given up: {why}", name(module, incident))

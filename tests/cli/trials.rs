@@ -49,7 +49,7 @@ fn the_bytes_are_the_same_from_threads_and_shards() {
     assert!(merged.stdout == whole.stdout && bench.read("merged") == bench.read("whole"));
     let (table, again) = (bench.ends(0, &merge), bench.ends(0, &trials("50", &["--plots", "own"])));
     assert_eq!(table.stdout, again.stdout);
-    for plot in ["success.svg", "makespan.svg", "depth.svg"] {
+    for plot in ["endings.svg", "success.svg", "makespan.svg", "depth.svg"] {
         let svg = bench.read(&format!("plots/{plot}"));
         assert!(svg.starts_with(b"<svg ") && svg == bench.read(&format!("own/{plot}")));
     }
@@ -64,13 +64,13 @@ fn shards_that_do_not_make_a_campaign_are_refused() {
     }
     let two = bench.read("two");
     bench.write("torn", &two[..two.len() - 9]);
-    let other = String::from_utf8(two).expect("text").replace("\"format\":1", "\"format\":7");
+    let other = String::from_utf8(two).expect("text").replace("\"format\":2", "\"format\":7");
     bench.write("other", other);
     bench.refuses(&["trials", "--merge", "one"], &["shard 2/2 is missing"]);
     bench.refuses(&["trials", "--merge", "one", "one", "two"], &["one: this is shard 1/2"]);
     bench.refuses(&["trials", "--merge", "one", "foreign"], &["foreign: ", "seed is 1, and not 0"]);
     bench.refuses(&["trials", "--merge", "one", "torn"], &["torn: ", "not whole"]);
-    bench.refuses(&["trials", "--merge", "one", "other"], &["other: ", "format 7", "format 1"]);
+    bench.refuses(&["trials", "--merge", "one", "other"], &["other: ", "format 7", "format 2"]);
     bench.refuses(&["trials", "--merge", "one", "sheets.obv"], &["sheets.obv: ", "no file of a"]);
     bench.refuses(&["trials", "--merge", "one", "gone"], &["gone: "]);
     let over = ["trials", "--merge", "one", "two", "--out", "one"];

@@ -9,7 +9,7 @@ use crate::report::{self, Report};
 use crate::story::Story;
 use crate::{Outcome, show, write};
 use obverse_recovery::{Bounds, Ending, Incident, Memory, Recovery, drive, recover};
-use obverse_sim::Sim;
+use obverse_sim::{Missed, Sim};
 use obverse_tape::TapeFile;
 use obverse_vm::{Direction, Limits, Machine};
 use obverse_workcell::Clock;
@@ -69,8 +69,10 @@ pub(crate) fn run(arguments: &RunArguments) -> Result {
     let (ending, incidents) = there(arguments, &mut machine, &mut cell, &mut memory);
     let recorded = record(arguments, &program, &machine, &cell, &ending)
         .and_then(|()| recovering::keep(&memory, arguments.recovering.memory.as_deref()));
-    finish(arguments, &machine, &cell, (&ending, &incidents), recorded.as_ref().err());
-    Ok(outcome(ending == Ending::Finished, recorded))
+    let missed = missed(&ending, &cell);
+    let told = Told { ending: &ending, incidents: &incidents, missed: &missed };
+    finish(arguments, &machine, &cell, &told, recorded.as_ref().err());
+    Ok(outcome(ending == Ending::Finished && missed.is_empty(), recorded))
 }
 
 /// The outcome of a run that has been told. That its tape was not written is said last: the run
@@ -181,13 +183,26 @@ pub(crate) fn record(
     write::file(path, &file.to_bytes().map_err(cannot)?)
 }
 
+/// What is not as the workcell file says that it should be, of a run that believes that all is well.
+fn missed(ending: &Ending, cell: &Sim) -> Vec<Missed> {
+    if *ending == Ending::Finished { cell.missed_goals() } else { Vec::new() }
+}
+
+/// What there is to say of a run in the end.
+struct Told<'t> {
+    ending: &'t Ending,
+    incidents: &'t [Incident],
+    missed: &'t [Missed],
+}
+
 fn finish(
     arguments: &Arguments,
     machine: &Machine<'_>,
     cell: &Sim,
-    (ending, incidents): (&Ending, &[Incident]),
+    told: &Told<'_>,
     unrecorded: Option<&Problem>,
 ) {
+    let Told { ending, incidents, missed } = *told;
     let module = machine.program().module();
     let words = report::ending_words(module, ending);
     if arguments.json {
@@ -196,11 +211,20 @@ fn finish(
         more.insert("errors".to_owned(), report::pending(machine));
         more.insert("incidents".to_owned(), recovering::incidents(module, incidents));
         more.insert("stopped_at".to_owned(), report::place(module, report::ending_pc(ending)));
+        let goal = |missed: &Missed| json!({ "goal": missed.goal + 1, "why": missed.why.code(), "text": missed.to_string() });
+        more.insert("missed_goals".to_owned(), missed.iter().map(goal).collect());
         more.extend(unrecorded.map(report::messages));
-        report::summary(ending.code(), report::figures(machine, cell), more);
+        let code = if missed.is_empty() { ending.code() } else { "false_success" };
+        report::summary(code, report::figures(machine, cell), more);
         return;
     }
-    write::line(&words);
+    match missed.is_empty() {
+        true => write::line(&words),
+        false => write::line(&format!("{words}, and it is not as it should be")),
+    }
+    for missed in missed {
+        write::line(&format!("  {missed}"));
+    }
     write::line(&figures_line(machine, cell));
 }
 

@@ -62,6 +62,10 @@ pub enum GiveUp {
     Stuck(u32),
     /// The way back was blocked, in both directions.
     Blocked,
+    /// The program's own sequence follows, and going back was not asked for.
+    Explicit,
+    /// The program declares nothing that is to be done about it.
+    NoRecovery,
     /// The strategy does not recover.
     Strategy,
 }
@@ -79,6 +83,8 @@ impl GiveUp {
             Self::Before => "given_up_before",
             Self::Stuck(_) => "stuck",
             Self::Blocked => "blocked",
+            Self::Explicit => "explicit",
+            Self::NoRecovery => "no_recovery",
             Self::Strategy => "strategy",
         }
     }
@@ -102,6 +108,8 @@ impl fmt::Display for GiveUp {
                 write!(f, "{attempts} attempts in a row have got the run no further")
             }
             Self::Blocked => write!(f, "the way back was blocked"),
+            Self::Explicit => write!(f, "what the program itself does about it follows"),
+            Self::NoRecovery => write!(f, "the program does nothing about it"),
             Self::Strategy => write!(f, "there is nothing else to try"),
         }
     }

@@ -42,3 +42,17 @@ pub(crate) fn raise(
     }
     is_raised
 }
+
+#[cfg(test)]
+mod tests {
+    use obverse_bytecode::FaultName;
+    use obverse_workcell::FaultKind;
+
+    /// Modules and workcells know nothing of each other, and mean the same by the same codes.
+    #[test]
+    fn what_a_module_can_name_is_what_a_workcell_can_do() {
+        let named: Vec<&str> = FaultName::ALL.iter().map(|name| name.code()).collect();
+        let done: Vec<&str> = FaultKind::ALL.iter().map(|kind| kind.code()).collect();
+        assert_eq!(named, done);
+    }
+}

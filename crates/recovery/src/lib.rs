@@ -6,12 +6,13 @@
 //!
 //! Reading order: [`ending`], how a run ends; [`mod@drive`], a run that never goes back by itself;
 //! [`trail`], what it may be taken back to; [`strategy`], the ways of recovering; [`incident`], an
-//! error at a place and what has been tried, with the words for a place and a fault that becomes
-//! an error (`place`, `fault`); [`depth`], how far to go back next; [`memory`], what
+//! error at a place and what has been tried, with the words for a place, a fault that becomes an
+//! error and what the program asks for (`place`, `fault`, `asked`); [`depth`], how far to go back next; [`memory`], what
 //! was learned of that, and `belief`, what follows; [`foresight`], who would know better;
 //! [`change`], what is done otherwise on
 //! the way forward again; [`tell`], what a person is told; [`mod@recover`], the loop.
 
+mod asked;
 mod belief;
 pub mod change;
 pub mod depth;
@@ -27,6 +28,7 @@ pub mod strategy;
 pub mod tell;
 pub mod trail;
 
+pub use asked::sequence;
 pub use drive::drive;
 pub use ending::{Ending, GiveUp};
 pub use foresight::Clairvoyant;

@@ -1,5 +1,6 @@
 //! The loop of a run that recovers: forward, and back where an error is due, until it ends.
 
+use crate::asked::{self, reversal};
 use crate::change;
 use crate::depth::{Policy, Question};
 use crate::drive;
@@ -11,7 +12,7 @@ use crate::place::place;
 use crate::strategy::{Bounds, Strategy};
 use crate::tell::{Operator, Step, Teller, Why};
 use crate::trail::Trail;
-use obverse_bytecode::{Depth, ErrorDeclaration, Module, Recovery as Declared, Reversal};
+use obverse_bytecode::{Depth, ErrorDeclaration, Module, Reversal};
 use obverse_geometry::{Axis, Frame};
 use obverse_isa::ErrorId;
 use obverse_vm::{Alteration, Direction, Event, Limits, Machine, Mark, Observer, Stop};
@@ -269,6 +270,7 @@ impl<'p, C: Workcell> Run<'_, 'p, '_, C> {
     }
 
     fn plan(&mut self, index: usize) -> Result<Plan, GiveUp> {
+        asked::check(self.declared(&self.open[index]), self.recovery.strategy)?;
         self.check_progress(index)?;
         let incident = &self.open[index];
         self.check_bounds(incident)?;
@@ -508,11 +510,15 @@ impl<'p, C: Workcell> Run<'_, 'p, '_, C> {
         let Incident { error, pc, entry, number, .. } = incident;
         let depth = self.machine.state().frames().len();
         self.given_up.push(GivenUp { error, entry, number, depth });
-        self.teller.on_step(&Step::GivenUp { incident: &incident, why }, self.cell);
+        if why != GiveUp::NoRecovery {
+            self.teller.on_step(&Step::GivenUp { incident: &incident, why }, self.cell);
+        }
         self.close(incident, Outcome::GivenUp(why));
         // What was raised is still due: the code behind it is what follows.
         let is_due = self.machine.state().raised().contains(&error);
-        let goes_on = self.recovery.strategy.goes_on_when_given_up() && is_due;
+        let is_programs =
+            self.recovery.strategy.goes_on_when_given_up() || why == GiveUp::NoRecovery;
+        let goes_on = is_programs && is_due;
         if goes_on { None } else { Some(Ending::GivenUp { error, pc, why }) }
     }
 
@@ -550,12 +556,5 @@ impl<'p, C: Workcell> Run<'_, 'p, '_, C> {
             self.teller.on_step(&Step::Recovered { incident: &incident }, self.cell);
         }
         self.recovery.incidents.push(incident);
-    }
-}
-
-fn reversal(error: &ErrorDeclaration) -> Option<&Reversal> {
-    match &error.recovery {
-        Declared::Reversing(reversal) => Some(reversal),
-        _ => None,
     }
 }

@@ -16,6 +16,7 @@ mod collision;
 mod fall;
 mod faults;
 mod feeders;
+mod goals;
 mod gripper;
 mod inputs;
 mod insertion;
@@ -42,6 +43,7 @@ mod world;
 
 pub use cell::{Cell, CellCode, CellError, CellPlaces};
 pub use faults::{FaultPlan, StopKind};
+pub use goals::{Miss, Missed};
 pub use plan::Plan;
 pub use seating::Seating;
 pub use sim::Sim;

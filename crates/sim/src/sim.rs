@@ -42,6 +42,8 @@ pub struct Sim {
     pub(crate) items: Inventory,
     /// How each item is in a seat, if it is in one.
     pub(crate) seatings: Vec<Option<Seating>>,
+    /// By goal: whether a part has met it that is no longer called by its name.
+    pub(crate) goals_met_before: Vec<bool>,
     /// The contact force where the arm stands, in newtons.
     pub(crate) force_n: f64,
     pub(crate) last_motion: MotionReport,
@@ -75,6 +77,7 @@ impl Sim {
             falls: 0,
             items,
             seatings: vec![None; world.cell.items.len()],
+            goals_met_before: vec![false; world.cell.goals.len()],
             force_n: 0.0,
             last_motion: MotionReport {
                 end: MotionEnd::Reached,
@@ -180,6 +183,7 @@ impl Sim {
         let world = self.world.clone();
         for (index, spec) in world.cell.feeders.iter().enumerate() {
             if usize::from(spec.output) == bit && spec.asks_level == level {
+                self.keep_met_goals(spec.item);
                 self.feeders[index].ask(index, self.now_s, &world, &mut self.items);
                 if self.items.held() != Some(spec.item) {
                     self.seatings[spec.item] = None;

@@ -78,7 +78,12 @@ impl World {
     /// Where an item should truly be: with what it stands on, but without an offset of its own.
     pub(crate) fn item_place(&self, index: usize) -> Pose {
         let item = &self.cell.items[index];
-        place(&self.fixtures, item.on.as_ref(), &item.pose)
+        self.place(item.on.as_ref(), &item.pose)
+    }
+
+    /// Where a place truly is that may move with a fixture.
+    pub(crate) fn place(&self, on: Option<&On>, nominal: &Pose) -> Pose {
+        place(&self.fixtures, on, nominal)
     }
 
     /// The gripper with its tool, if there is one.

@@ -227,6 +227,42 @@ impl Fault {
     }
 }
 
+/// Where a motion began that was made aside of where the program says. It goes back to there
+/// first, so that its way back is the way that it came.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Aside {
+    /// How many instructions lay between the start of the program and the motion.
+    pub steps: u64,
+    /// Where the joints were.
+    pub joints: JointConfiguration,
+}
+
+impl Aside {
+    fn from_words(words: [u64; 7]) -> Self {
+        let [steps, joints @ ..] = words;
+        Self { steps, joints: JointConfiguration(joints.map(f64::from_bits)) }
+    }
+
+    /// Push it.
+    pub fn push(&self, recorder: &mut impl Recorder) {
+        let [a, b, c, d, e, f] = self.joints.bits();
+        recorder.aside([self.steps, a, b, c, d, e, f]);
+    }
+
+    /// Pop the newest, if it is that of the motion before which so many instructions lay.
+    pub fn pop(tape: &mut Tape, steps: u64) -> Option<Self> {
+        let aside = Self::peek(tape, steps)?;
+        tape.asides.pop();
+        Some(aside)
+    }
+
+    /// Read it without popping.
+    #[must_use]
+    pub fn peek(tape: &Tape, steps: u64) -> Option<Self> {
+        tape.asides.last().map(Self::from_words).filter(|aside| aside.steps == steps)
+    }
+}
+
 /// Where a task was held when a fork was left. What its calls held is a [`Frame`] each.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct HeldTask {

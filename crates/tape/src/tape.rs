@@ -24,6 +24,8 @@ pub trait Recorder {
     fn control(&mut self, word: u64);
     /// Write a word on a fault that became an error.
     fn fault(&mut self, word: u64);
+    /// Write where a motion began that was made aside.
+    fn aside(&mut self, words: [u64; 7]);
 }
 
 /// The recorder of a run that will not go back.
@@ -50,6 +52,7 @@ impl Recorder for NoTape {
     fn control(&mut self, _: u64) {}
     #[inline(always)]
     fn fault(&mut self, _: u64) {}
+    fn aside(&mut self, _: [u64; 7]) {}
 }
 
 /// A place on the tape: the length of each stream.
@@ -65,13 +68,16 @@ pub struct Place {
     pub control: u64,
     /// Faults that became errors.
     pub faults: u64,
+    /// Motions that were made aside.
+    pub asides: u64,
 }
 
 impl Place {
     /// The size of the tape up to here, in bits.
     #[must_use]
     pub fn size_bits(&self) -> u64 {
-        self.bits + 64 * (self.words + self.control + self.faults) + 384 * self.joints
+        let words = self.words + self.control + self.faults + 7 * self.asides;
+        self.bits + 64 * words + 384 * self.joints
     }
 }
 
@@ -83,6 +89,7 @@ pub struct Tape {
     pub(crate) joints: Stream<[f64; 6]>,
     pub(crate) control: Stream<u64>,
     pub(crate) faults: Stream<u64>,
+    pub(crate) asides: Stream<[u64; 7]>,
     /// What has been recorded and dropped, in bits.
     dropped_bits: u64,
     /// The most full chunks that may be held, each as large as one of words.
@@ -140,6 +147,10 @@ impl Recorder for Tape {
     fn fault(&mut self, word: u64) {
         self.faults.push(word);
     }
+
+    fn aside(&mut self, words: [u64; 7]) {
+        self.asides.push(words);
+    }
 }
 
 impl Tape {
@@ -152,6 +163,7 @@ impl Tape {
             joints: Stream::default(),
             control: Stream::default(),
             faults: Stream::default(),
+            asides: Stream::default(),
             dropped_bits: 0,
             limit_chunks: limit_bytes / (CHUNK * 8),
         }
@@ -166,6 +178,7 @@ impl Tape {
             joints: self.joints.len() as u64,
             control: self.control.len() as u64,
             faults: self.faults.len() as u64,
+            asides: self.asides.len() as u64,
         }
     }
 
@@ -173,7 +186,8 @@ impl Tape {
     fn held_chunks(&self) -> usize {
         let joints = self.joints.full_chunks() * size_of::<[f64; 6]>() / size_of::<u64>();
         let words = self.words.full_chunks() + self.control.full_chunks();
-        let words = words + self.faults.full_chunks();
+        let asides = self.asides.full_chunks() * size_of::<[u64; 7]>() / size_of::<u64>();
+        let words = words + self.faults.full_chunks() + asides;
         words + self.bits.full_chunks() + joints
     }
 
@@ -206,6 +220,7 @@ impl Tape {
         self.joints.truncate(to.joints as usize);
         self.control.truncate(to.control as usize);
         self.faults.truncate(to.faults as usize);
+        self.asides.truncate(to.asides as usize);
         // What a file says was dropped is not believed.
         let dropped_bits = before_bits - self.place().size_bits();
         self.dropped_bits = self.dropped_bits.saturating_add(dropped_bits);
@@ -227,7 +242,7 @@ impl Tape {
     #[must_use]
     pub fn held_bytes(&self) -> usize {
         let words = self.words.held_bytes() + self.control.held_bytes();
-        let words = words + self.faults.held_bytes();
+        let words = words + self.faults.held_bytes() + self.asides.held_bytes();
         self.bits.held_bytes() + words + self.joints.held_bytes()
     }
 
@@ -264,6 +279,7 @@ impl Tape {
             joints: self.joints.iter().collect(),
             control: self.control.iter().collect(),
             faults: self.faults.iter().collect(),
+            asides: self.asides.iter().collect(),
             dropped_bits: self.dropped_bits,
         }
     }
@@ -277,6 +293,7 @@ impl Tape {
             joints: streams.joints.iter().copied().collect(),
             control: streams.control.iter().copied().collect(),
             faults: streams.faults.iter().copied().collect(),
+            asides: streams.asides.iter().copied().collect(),
             dropped_bits: streams.dropped_bits,
             limit_chunks: DEFAULT_LIMIT_BYTES / (CHUNK * 8),
         }
@@ -296,6 +313,8 @@ pub struct Streams {
     pub control: Vec<u64>,
     /// Words on the faults that became errors.
     pub faults: Vec<u64>,
+    /// Where motions began that were made aside: how many instructions lay before, and the joints.
+    pub asides: Vec<[u64; 7]>,
     /// What was recorded before and dropped, in bits.
     pub dropped_bits: u64,
 }

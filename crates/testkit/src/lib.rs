@@ -7,6 +7,7 @@ pub mod altered;
 pub mod always_laws;
 pub mod code;
 pub mod debug_laws;
+pub mod faulty;
 pub mod files;
 pub mod fork_code;
 pub mod format_laws;

@@ -14,6 +14,27 @@ use obverse_vm::{Direction, Event, Limits, Machine, Mark, Observer, Stop};
 use obverse_workcell::{Fault, Safety, Workcell};
 use std::collections::BTreeMap;
 
+/// Every strategy, with the numbers that are usual.
+pub const STRATEGIES: [Strategy; 10] = [
+    Strategy::Declared,
+    Strategy::Stop,
+    Strategy::Retry { times: 3 },
+    Strategy::BackUp { distance_m: 0.30, times: 6 },
+    Strategy::Restart { times: 3 },
+    Strategy::Explicit,
+    Strategy::Fixed { actions: 3 },
+    Strategy::Escalating,
+    Strategy::Learned,
+    // Where nobody knows what will come, it has nothing to try.
+    Strategy::Oracle,
+];
+
+/// Whether a strategy leaves the arm where the program does not know it to be.
+#[must_use]
+pub fn acts_in_place(strategy: Strategy) -> bool {
+    matches!(strategy, Strategy::Retry { .. } | Strategy::BackUp { .. } | Strategy::Restart { .. })
+}
+
 /// The longest run, in instructions.
 const MAX_INSTRUCTIONS: u64 = 3_000;
 
@@ -70,17 +91,7 @@ pub fn recovers_within_bounds(u: &mut Unstructured<'_>) -> Result<bool> {
     let mut cell = Logged::new(u.arbitrary()?);
     let fraction = f64::from(u.int_in_range(0_u8..=10)?) / 10.0;
     cell.ledger.stop_at = Some((u.int_in_range(0..=40)?, fraction));
-    let strategy = *u.choose(&[
-        Strategy::Declared,
-        Strategy::Stop,
-        Strategy::Retry { times: 3 },
-        Strategy::BackUp { distance_m: 0.1, times: 2 },
-        Strategy::Restart { times: 2 },
-        Strategy::Explicit,
-        Strategy::Fixed { actions: 2 },
-        Strategy::Escalating,
-        Strategy::Learned,
-    ])?;
+    let strategy = *u.choose(&STRATEGIES)?;
     let mut operator = Releases(u.int_in_range(0..=2)?);
     let Ok(mut machine) = Machine::new(&program, &cell) else { return Ok(false) };
     let start = machine.digest(&cell);
@@ -103,10 +114,7 @@ pub fn recovers_within_bounds(u: &mut Unstructured<'_>) -> Result<bool> {
     let is_closed = incidents.iter().all(|incident| incident.outcome.is_some());
     assert!(is_closed, "{incidents:?}\n{source}");
     // What was done in place, or commanded beside the program, the world keeps.
-    let is_exact = !matches!(
-        strategy,
-        Strategy::Retry { .. } | Strategy::BackUp { .. } | Strategy::Restart { .. }
-    );
+    let is_exact = !acts_in_place(strategy);
     if ending == Ending::Budget {
         return Ok(false);
     }

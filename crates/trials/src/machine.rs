@@ -6,7 +6,7 @@ use crate::outcome::{Ending, Incident, Outcome};
 use crate::strategy::Strategy;
 use obverse_bytecode::{Module, Verified};
 use obverse_recovery::{Bounds, Clairvoyant, Foresight, Memory, Operator, Recovery, Site, recover};
-use obverse_sim::{Cell, Sim};
+use obverse_sim::{Cell, Missed, Sim};
 use obverse_vm::{Limits, LinkError, Machine};
 use obverse_workcell::{Clock, Fault};
 
@@ -111,7 +111,10 @@ impl Stand for MachineStand<'_> {
         let ended = recover(&mut machine, limits, &mut cell, &mut recovery, &mut ());
         let incidents = recovery.incidents;
         let module = machine.program().module();
-        let (ending, why) = ending(module, &ended);
+        let (ending, why) = match ending(module, &ended) {
+            (Ending::Succeeded, _) => judged(&cell),
+            other => other,
+        };
         let goes_on = answer.goes_on_when_given_up();
         let calls = operator.given + u32::from(ending != Ending::Succeeded);
         Outcome {
@@ -126,7 +129,7 @@ impl Stand for MachineStand<'_> {
             incidents: incidents
                 .iter()
                 .map(|found| {
-                    let put_right = goes_on && ending == Ending::Succeeded;
+                    let put_right = goes_on && ended == obverse_recovery::Ending::Finished;
                     incident(module, found, put_right, seer.cause_of(found))
                 })
                 .collect(),
@@ -181,6 +184,17 @@ fn ending(module: &Module, ended: &obverse_recovery::Ending) -> (Ending, Option<
         Ended::Fault { fault, .. } => (Ending::Fault, Some(fault.kind().code().to_owned())),
         Ended::Trap(trap) => (Ending::Trap, Some(trap.kind.to_string())),
         Ended::Budget => (Ending::Limit, Some("instructions".to_owned())),
+    }
+}
+
+/// How a run ended that believes that it has succeeded: by what is truly so.
+fn judged(cell: &Sim) -> (Ending, Option<String>) {
+    let missed = cell.missed_goals();
+    let word = |missed: &Missed| format!("{}: {}", missed.what, missed.why.code());
+    let words: Vec<String> = missed.iter().map(word).collect();
+    match words.is_empty() {
+        true => (Ending::Succeeded, None),
+        false => (Ending::FalseSuccess, Some(words.join("; "))),
     }
 }
 

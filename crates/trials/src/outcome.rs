@@ -7,8 +7,11 @@ use serde::{Deserialize, Serialize};
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Ending {
-    /// The program ended and no error is pending.
+    /// The program ended, no error is pending, and the assembly is as the workcell file says that
+    /// it should be.
     Succeeded,
+    /// The program ended and believes that all is well, and the assembly is not as it should be.
+    FalseSuccess,
     /// Recovery was given up, for a reason that is named, and the arm holds.
     GivenUp,
     /// The workcell did not do as commanded, and the program maps that to no error.
@@ -41,7 +44,7 @@ pub struct Incident {
 pub struct Outcome {
     /// How it ended.
     pub ending: Ending,
-    /// Why it ended so, if not by success: which bound was met, which fault.
+    /// Why it ended so, if not by success: which bound was met, which fault, which goal was missed.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub why: Option<String>,
     /// How often something was tried again.
@@ -65,10 +68,18 @@ impl Outcome {
         self.makespan_s + self.person_s
     }
 
-    /// Whether a person had to come, to set it right or to release the arm.
+    /// Whether a person had to come, to set it right or to release the arm; also who finds later
+    /// that the assembly is not as it should be.
     #[must_use]
     pub fn takes_a_person(&self) -> bool {
         self.ending != Ending::Succeeded || self.releases > 0
+    }
+
+    /// Whether an error of it was put right: the run went on past it, and did not end in what only
+    /// seems to be right.
+    #[must_use]
+    pub fn puts_right(&self, incident: &Incident) -> bool {
+        incident.recovered && self.ending != Ending::FalseSuccess
     }
 }
 

@@ -21,6 +21,9 @@ pub struct Plan {
     pub program_digest: String,
     /// A digest of the workcell file.
     pub cell_digest: String,
+    /// How many goals of the workcell file a finished assembly is judged by; with none, what the
+    /// program itself believes is all that is known.
+    pub goals: u32,
     /// A digest of what the strategy that learns goes by; none where it is not compared.
     pub memory_digest: Option<String>,
     /// The strategies, in the order of the tables.

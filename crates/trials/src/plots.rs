@@ -27,6 +27,7 @@ pub fn plots(plan: &Plan, summary: &Summary) -> Vec<Plot> {
         plan.seed
     );
     vec![
+        Plot { name: "endings.svg", svg: endings(summary, &under) },
         Plot { name: "success.svg", svg: success(summary, &under) },
         Plot { name: "makespan.svg", svg: makespan(summary, &under) },
         Plot { name: "depth.svg", svg: depth(summary, &under) },
@@ -42,6 +43,8 @@ const ROW: f64 = 34.0;
 const INK: &str = "#222222";
 const FAINT: &str = "#666666";
 const GRID: &str = "#e2e2e2";
+/// What seems to be right and is not.
+const FALSE: &str = "#b3123f";
 
 fn colour(strategy: Strategy) -> &'static str {
     match strategy {
@@ -109,6 +112,12 @@ impl Rows {
         self.svg.line([from, middle(row)], [to, middle(row)], colour, width);
     }
 
+    /// A broad bar along a row from one value to another.
+    fn bar(&mut self, row: usize, from: f64, to: f64, colour: &str) {
+        let (from, to) = (self.x(from), self.x(to));
+        self.svg.rect([from, middle(row) - 8.0], [(to - from).max(0.0), 16.0], colour);
+    }
+
     /// A stroke across a row.
     fn stroke(&mut self, row: usize, at: f64, half: f64, colour: &str) {
         let (x, y) = (self.x(at), middle(row));
@@ -124,6 +133,37 @@ impl Rows {
 
 fn middle(row: usize) -> f64 {
     TOP + ROW * (row as f64 + 0.5)
+}
+
+/// How the assemblies ended: as they should, falsely, or at a person.
+fn endings(summary: &Summary, under: &str) -> String {
+    let title = match summary.is_judged {
+        true => "How the assemblies ended: as they should be, seemingly so, at a person",
+        false => "How the assemblies ended: by what the program believes, at a person",
+    };
+    let ticks = (0..=5).map(|tick| f64::from(tick) * 20.0).collect();
+    let axis = Axis { range: 0.0..100.0, is_by_factors: false, ticks };
+    let mut rows = Rows::new(summary, title, under, axis);
+    rows.grid("assemblies, %");
+    for (row, tally) in summary.strategies.iter().enumerate() {
+        if tally.runs == 0 {
+            rows.remark(row, FAINT, "no assemblies");
+            continue;
+        }
+        let percent = |count: u64| 100.0 * count as f64 / tally.runs as f64;
+        let left = percent(tally.to_a_person - tally.false_successes);
+        let falsely = percent(tally.false_successes);
+        let right = 100.0 - left - falsely;
+        rows.bar(row, 0.0, right, colour(tally.strategy));
+        rows.bar(row, right, right + falsely, FALSE);
+        rows.bar(row, right + falsely, 100.0, GRID);
+        let words = match tally.false_successes {
+            0 => format!("{right:.1} %"),
+            _ => format!("{right:.1} %, {falsely:.1} % seemingly"),
+        };
+        rows.remark(row, colour(tally.strategy), &words);
+    }
+    rows.svg.finish()
 }
 
 /// How much was put right, with intervals.

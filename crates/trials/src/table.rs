@@ -37,7 +37,8 @@ impl Table {
     }
 }
 
-/// The table by strategy, and that by strategy and error where errors came up.
+/// The table by strategy, that by strategy and error where errors came up, and what is not as it
+/// should be where that is so.
 #[must_use]
 pub fn draw(summary: &Summary) -> String {
     let mut text = by_strategy(summary).draw();
@@ -45,6 +46,11 @@ pub fn draw(summary: &Summary) -> String {
     if by_error.rows.len() > 1 {
         text.push('\n');
         text.push_str(&by_error.draw());
+    }
+    let misses = misses(summary);
+    if misses.rows.len() > 1 {
+        text.push('\n');
+        text.push_str(&misses.draw());
     }
     text
 }
@@ -57,6 +63,7 @@ fn by_strategy(summary: &Summary) -> Table {
         "errors",
         "recovered",
         "95 % interval",
+        "false",
         "to a person",
         "mean s",
         "95th s",
@@ -71,12 +78,25 @@ fn by_strategy(summary: &Summary) -> Table {
         ];
         row.extend(recovery(&tally.all));
         row.extend([
+            if summary.is_judged { share(tally.false_successes, tally.runs) } else { none() },
             share(tally.to_a_person, tally.runs),
             mean(tally),
             seconds(tally.makespan_quantile_s(0.95)),
             number(tally.all.mean_depth(), 1),
         ]);
         table.rows.push(row);
+    }
+    table
+}
+
+/// What was not as it should be where the program ended as if all were well.
+fn misses(summary: &Summary) -> Table {
+    let mut table = Table::new(2, &["strategy", "not as it should be", "assemblies"]);
+    for tally in &summary.strategies {
+        for (index, (miss, count)) in tally.misses.iter().enumerate() {
+            let strategy = if index == 0 { tally.strategy.to_string() } else { String::new() };
+            table.rows.push(vec![strategy, miss.clone(), grouped(*count)]);
+        }
     }
     table
 }

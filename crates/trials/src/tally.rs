@@ -1,6 +1,6 @@
 //! Counting what came of a campaign: by strategy, and by strategy and error.
 
-use crate::outcome::{Incident, Record};
+use crate::outcome::{Ending, Incident, Record};
 use crate::plan::Plan;
 use crate::statistics::{Interval, mean, mean_interval, quantile, wilson};
 use crate::strategy::Strategy;
@@ -12,6 +12,8 @@ use std::collections::BTreeMap;
 pub struct Summary {
     /// By strategy, in the order of the plan.
     pub strategies: Vec<Tally>,
+    /// Whether assemblies were judged by goals, and not by what the program believes.
+    pub is_judged: bool,
 }
 
 /// What came of all assemblies by a strategy.
@@ -23,7 +25,11 @@ pub struct Tally {
     pub runs: u64,
     /// In how many of them an error came up.
     pub in_error: u64,
-    /// For how many a person had to come.
+    /// How many ended as if all were well, and were not as they should be.
+    pub false_successes: u64,
+    /// How many of them missed a goal how, in words; one may miss several.
+    pub misses: BTreeMap<String, u64>,
+    /// For how many a person had to come; those that ended falsely are among them.
     pub to_a_person: u64,
     /// How often something was tried again.
     pub attempts: u64,
@@ -51,16 +57,16 @@ pub struct Kind {
 pub struct Errors {
     /// How many came up.
     pub count: u64,
-    /// After how many the program went on.
+    /// After how many the program went on, and came to an assembly that is as it should be.
     pub recovered: u64,
     /// How many of those were recovered by going back how many actions, at the last attempt.
     pub depths: BTreeMap<u32, u64>,
 }
 
 impl Errors {
-    fn add(&mut self, incident: &Incident) {
+    fn add(&mut self, incident: &Incident, is_put_right: bool) {
         self.count += 1;
-        if incident.recovered {
+        if is_put_right {
             self.recovered += 1;
             if let Some(depth) = incident.depths.last() {
                 *self.depths.entry(*depth).or_default() += 1;
@@ -112,7 +118,8 @@ pub fn summary(plan: &Plan, records: &[Record]) -> Summary {
     let tally = |strategy: &Strategy| {
         tally(*strategy, records.iter().filter(|record| record.strategy == *strategy))
     };
-    Summary { strategies: plan.strategies.iter().map(tally).collect() }
+    let strategies = plan.strategies.iter().map(tally).collect();
+    Summary { strategies, is_judged: plan.goals > 0 }
 }
 
 fn tally<'r>(strategy: Strategy, records: impl Iterator<Item = &'r Record>) -> Tally {
@@ -120,6 +127,8 @@ fn tally<'r>(strategy: Strategy, records: impl Iterator<Item = &'r Record>) -> T
         strategy,
         runs: 0,
         in_error: 0,
+        false_successes: 0,
+        misses: BTreeMap::new(),
         to_a_person: 0,
         attempts: 0,
         all: Errors::default(),
@@ -130,15 +139,26 @@ fn tally<'r>(strategy: Strategy, records: impl Iterator<Item = &'r Record>) -> T
     for Record { outcome, .. } in records {
         tally.runs += 1;
         tally.in_error += u64::from(!outcome.incidents.is_empty());
+        if outcome.ending == Ending::FalseSuccess {
+            tally.false_successes += 1;
+            for miss in outcome.why.iter().flat_map(|why| why.split("; ")) {
+                *tally.misses.entry(miss.to_owned()).or_default() += 1;
+            }
+        }
         tally.to_a_person += u64::from(outcome.takes_a_person());
         tally.attempts += u64::from(outcome.attempts);
         tally.makespans_s.push(outcome.total_s());
         for incident in &outcome.incidents {
-            tally.all.add(incident);
-            kinds.entry((&incident.error, None)).or_default().add(incident);
+            let is_put_right = outcome.puts_right(incident);
+            let mut add = |cause| {
+                let kind = kinds.entry((incident.error.as_str(), cause)).or_default();
+                kind.add(incident, is_put_right);
+            };
+            add(None);
             if let Some(cause) = &incident.cause {
-                kinds.entry((&incident.error, Some(cause))).or_default().add(incident);
+                add(Some(cause));
             }
+            tally.all.add(incident, is_put_right);
         }
     }
     tally.makespans_s.sort_by(f64::total_cmp);
@@ -177,6 +197,8 @@ impl Tally {
             ("strategy", json!(self.strategy)),
             ("runs", json!(self.runs)),
             ("in_error", json!(self.in_error)),
+            ("false_successes", json!(self.false_successes)),
+            ("misses", json!(self.misses)),
             ("to_a_person", json!(self.to_a_person)),
             ("attempts", json!(self.attempts)),
             ("makespan_mean_s", json!(self.makespan_mean_s())),

@@ -11,6 +11,7 @@ use crate::observe::{Event, Observer};
 use crate::ops::acts::{Acts, Done};
 use crate::state::{Compensation, Direction, Frame, MAX_FRAMES, Pending, State};
 use crate::stop::{Refusal, Stop, Trap, TrapKind};
+use obverse_geometry::JointConfiguration;
 use obverse_isa::{Class, FunctionId, Instr, ReasonId, for_each_op, op};
 use obverse_tape::{NoTape, Record, record};
 use obverse_workcell::{MotionReport, Workcell};
@@ -45,6 +46,7 @@ macro_rules! acts {
             level_before: state.pending.and_then(|pending| pending.level_before),
             pc: state.place.pc as u32,
             alteration: $machine.alteration.as_ref(),
+            aside: None,
             may_rest: false,
             done: Done::default(),
         }
@@ -308,6 +310,7 @@ impl Machine<'_> {
         }
         let acted = op.forward(&mut acts, &saved);
         let done = acts.done;
+        self.record_aside(done.aside);
         if let (Err(Failure::Trap(_)), false, Some(tape)) = (&acted, is_again, &mut self.tape) {
             // The statement has not begun, so nothing of it is recorded.
             R::pop(tape);
@@ -321,18 +324,43 @@ impl Machine<'_> {
         R: Record,
     {
         if !self.count_command(op) {
+            let steps = self.steps_before_act();
             let tape = self.tape.as_mut().ok_or(TrapKind::NoTape)?;
+            record::Aside::pop(tape, steps);
             return R::pop(tape).map(|_| Done::default()).ok_or(TrapKind::TapeEmpty.into());
         }
         let tape = self.tape.as_ref().ok_or(TrapKind::NoTape)?;
         let saved = R::peek(tape).ok_or(TrapKind::TapeEmpty)?;
-        let mut acts = acts!(self, host);
+        let steps = self.steps_before_act();
+        let aside = record::Aside::peek(tape, steps).map(|aside| aside.joints);
+        let mut acts = Acts { aside, ..acts!(self, host) };
         op.reverse(&mut acts, &saved)?;
         let done = acts.done;
         if let Some(tape) = &mut self.tape {
+            record::Aside::pop(tape, steps);
             R::pop(tape);
         }
         Ok(done)
+    }
+
+    /// Keep where a motion began that was made aside, in place of where it did when it was begun
+    /// before.
+    fn record_aside(&mut self, aside: Option<JointConfiguration>) {
+        let steps = self.state.steps();
+        if let (Some(joints), Some(tape)) = (aside, &mut self.tape) {
+            record::Aside::pop(tape, steps);
+            record::Aside { steps, joints }.push(tape);
+        }
+    }
+
+    /// How many instructions lie before the act that is being reversed: the machine stands behind
+    /// it, or before one that was begun going forward.
+    fn steps_before_act(&self) -> u64 {
+        let steps = self.state.steps();
+        match self.state.pending {
+            Some(Pending { direction: Direction::Forward, .. }) => steps,
+            _ => steps.saturating_sub(1),
+        }
     }
 
     /// Count what commands the workcell; whether it is done at all, or passed over.

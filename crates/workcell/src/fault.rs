@@ -73,51 +73,39 @@ pub enum Fault {
     },
 }
 
-/// A fault without its numbers, for tables and statistics.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
-pub enum FaultKind {
-    /// See [`Fault::JointLimit`].
-    JointLimit,
-    /// See [`Fault::OutOfReach`].
-    OutOfReach,
-    /// See [`Fault::Singular`].
-    Singular,
-    /// See [`Fault::Collision`].
-    Collision,
-    /// See [`Fault::ForceLimit`].
-    ForceLimit,
-    /// See [`Fault::ProtectiveStop`].
-    ProtectiveStop,
-    /// See [`Fault::EmergencyStop`].
-    EmergencyStop,
-    /// See [`Fault::StoppedShort`].
-    StoppedShort,
-    /// See [`Fault::Stopped`].
-    Stopped,
-    /// See [`Fault::BadCommand`].
-    BadCommand,
-    /// See [`Fault::Missing`].
-    Missing,
+macro_rules! kinds {
+    ($($kind:ident $code:literal)*) => {
+        /// A fault without its numbers, for tables and statistics.
+        #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+        pub enum FaultKind {
+            $(#[doc = concat!("See [`Fault::", stringify!($kind), "`].")] $kind,)*
+        }
+
+        impl FaultKind {
+            /// Every kind.
+            pub const ALL: &'static [Self] = &[$(Self::$kind),*];
+
+            /// The stable code of this kind, as machines read it.
+            #[must_use]
+            pub fn code(self) -> &'static str {
+                match self { $(Self::$kind => $code,)* }
+            }
+        }
+    };
 }
 
-impl FaultKind {
-    /// The stable code of this kind, as machines read it.
-    #[must_use]
-    pub fn code(self) -> &'static str {
-        match self {
-            Self::JointLimit => "joint_limit",
-            Self::OutOfReach => "out_of_reach",
-            Self::Singular => "singular",
-            Self::Collision => "collision",
-            Self::ForceLimit => "force_limit",
-            Self::ProtectiveStop => "protective_stop",
-            Self::EmergencyStop => "emergency_stop",
-            Self::StoppedShort => "stopped_short",
-            Self::Stopped => "stopped",
-            Self::BadCommand => "bad_command",
-            Self::Missing => "missing",
-        }
-    }
+kinds! {
+    JointLimit "joint_limit"
+    OutOfReach "out_of_reach"
+    Singular "singular"
+    Collision "collision"
+    ForceLimit "force_limit"
+    ProtectiveStop "protective_stop"
+    EmergencyStop "emergency_stop"
+    StoppedShort "stopped_short"
+    Stopped "stopped"
+    BadCommand "bad_command"
+    Missing "missing"
 }
 
 impl Fault {

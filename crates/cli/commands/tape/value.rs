@@ -53,7 +53,8 @@ pub(super) fn words(module: &Module, pc: u32, size: Place, top: &Newest) -> Stri
         format!("a fault as error {}", error.map_or("unknown", |error| &error.name))
     };
     let fault = top.fault.filter(|_| size.faults > 0).map(raised);
-    own.into_iter().chain(turn).chain(fault).collect::<Vec<_>>().join(", ")
+    let aside = (size.asides > 0).then(|| "where it was made aside".to_owned());
+    own.into_iter().chain(turn).chain(fault).chain(aside).collect::<Vec<_>>().join(", ")
 }
 
 /// Whose turn ended with the instruction.

@@ -163,5 +163,6 @@ fn less(a: Place, b: Place) -> Place {
         joints: a.joints.saturating_sub(b.joints),
         control: a.control.saturating_sub(b.control),
         faults: a.faults.saturating_sub(b.faults),
+        asides: a.asides.saturating_sub(b.asides),
     }
 }

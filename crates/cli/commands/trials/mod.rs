@@ -10,6 +10,7 @@ use crate::problem::Problem;
 use crate::{Outcome, files, lacking, show, write};
 use journal::Journal;
 use obverse_recovery::Memory;
+use obverse_sim::Cell;
 use obverse_trials::machine::Terms;
 use obverse_trials::{MachineCase, Part, Plan, Shard, Strategy, Summary};
 use obverse_trials::{plots, shard, statistics, table};
@@ -123,7 +124,7 @@ fn campaign(arguments: &Arguments, path: &Path) -> std::result::Result<Part, Pro
         let inputs: Vec<PathBuf> = program.files().into_iter().chain(cell).collect();
         journal::check(out, &inputs, arguments.resume)?;
     }
-    let mut plan = plan(arguments, &program, file.text.as_deref(), strategies)?;
+    let mut plan = plan(arguments, &program, (&cell, file.text.as_deref()), strategies)?;
     let memory = match plan.strategies.contains(&Strategy::Learned) {
         true => {
             let memory = learned(arguments, &case, jobs)?;
@@ -188,7 +189,7 @@ fn check(arguments: &Arguments) -> std::result::Result<usize, Problem> {
 fn plan(
     arguments: &Arguments,
     program: &Program,
-    cell: Option<&str>,
+    (cell, cell_text): (&Cell, Option<&str>),
     strategies: Vec<Strategy>,
 ) -> std::result::Result<Plan, Problem> {
     let module = obverse_bytecode::encode(program.verified.module())
@@ -198,7 +199,8 @@ fn plan(
         version: env!("CARGO_PKG_VERSION").to_owned(),
         program: name.to_string_lossy().into_owned(),
         program_digest: digest(&module),
-        cell_digest: digest(cell.unwrap_or_default().as_bytes()),
+        cell_digest: digest(cell_text.unwrap_or_default().as_bytes()),
+        goals: u32::try_from(cell.goals.len()).unwrap_or(u32::MAX),
         memory_digest: None,
         strategies,
         seed: arguments.seed,

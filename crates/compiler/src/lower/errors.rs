@@ -11,7 +11,7 @@ use super::statement::PREFIX;
 use super::test::Test;
 use crate::response::{Response, is_for_caller};
 use crate::tree::StatementKind;
-use obverse_bytecode::{Continuation, ErrorDeclaration, Mark, Recovery, Severity};
+use obverse_bytecode::{Continuation, ErrorDeclaration, Mark, Recovery};
 use obverse_isa::{ErrorId, FunctionId, GlobalId, Instr, LocalId, Type};
 
 /// How often something is done again before it is given up.
@@ -102,9 +102,7 @@ impl Lower<'_> {
             self.push(Instr::PushRaised { error });
             self.code.jump(|target| Instr::JumpUnless { prefix: PREFIX, target })
         });
-        if self.is_reversed(error) {
-            self.push(Instr::ErrorDue { error });
-        }
+        self.push(Instr::ErrorDue { error });
         match (response, self.continuation(error)) {
             (Response::Recover { using, .. }, Some(then)) => {
                 self.recover(error, using, then, site);
@@ -112,13 +110,6 @@ impl Lower<'_> {
             _ => self.give_up(Way::Out),
         }
         next.into_iter().for_each(|next| self.join_one(next));
-    }
-
-    /// Whether whoever drives the machine may go back for an error before the code responds.
-    fn is_reversed(&self, error: ErrorId) -> bool {
-        let declared = &self.program.module.errors[error.index()];
-        declared.severity == Severity::Recoverable
-            && matches!(declared.recovery, Recovery::Reversing(_))
     }
 
     fn recover(

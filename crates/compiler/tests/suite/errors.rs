@@ -37,12 +37,13 @@ fn an_error_without_recovery_stops_with_the_error_pending() {
         enter
         sense.holding $0
         push.local $0
-        jump.unless +5
+        jump.unless +6
         error.raise e
+        error.due e
         push.bool high
         store.global $leaving
         jump +4
-        land -5
+        land -6
         push.const 1.0
         wait
         join -4
@@ -65,12 +66,13 @@ fn a_fatal_error_stops() {
         enter
         sense.holding $0
         push.local $0
-        jump.unless +5
+        jump.unless +6
         error.raise e
+        error.due e
         push.bool high
         store.global $leaving
         jump +2
-        land -5
+        land -6
         join -2
         return
         ",
@@ -92,6 +94,7 @@ fn recover_and_go_on() {
         "
         enter
         error.raise e
+        error.due e
         call fix
         error.clear e
         push.const 1.0
@@ -118,20 +121,21 @@ fn recover_and_do_the_action_again() {
         enter
         push.int 0
         store.local $rounds
-        join +8
+        join +9
         call go
         push.raised e
-        jump.unless +10
+        jump.unless +11
+        error.due e
         jump.unless.local.lt.imm $rounds 3 +5
         call fix
         error.clear e
         add.local.imm $rounds 1
-        jump -8
+        jump -9
         land -5
         push.bool high
         store.global $leaving
         jump +4
-        land -10
+        land -11
         push.const 1.0
         wait
         join -4
@@ -157,12 +161,13 @@ fn recover_and_do_the_sequence_again() {
         enter
         push.setting speed
         store.local $initial_speed
-        join +22
+        join +23
         push.speed slow
         setting.set speed
         call go
         push.raised e
-        jump.unless +9
+        jump.unless +10
+        error.due e
         jump.unless.local.lt.imm $rounds 3 +4
         call fix
         error.clear e
@@ -171,7 +176,7 @@ fn recover_and_do_the_sequence_again() {
         push.bool high
         store.global $leaving
         jump +11
-        land -9
+        land -10
         push.const 1.0
         wait
         jump +6
@@ -179,7 +184,7 @@ fn recover_and_do_the_sequence_again() {
         add.local.imm $rounds 1
         push.local $initial_speed
         setting.set speed
-        jump -22
+        jump -23
         land -6
         join -11
         push.local $initial_speed
@@ -205,13 +210,14 @@ fn recover_and_stop() {
         enter
         sense.holding $0
         push.local $0
-        jump.unless +6
+        jump.unless +7
         error.raise e
+        error.due e
         call fix
         push.bool high
         store.global $leaving
         jump +4
-        land -6
+        land -7
         push.const 1.0
         wait
         join -4
@@ -273,15 +279,16 @@ fn the_handler_of_a_restart_leaves_the_error_pending() {
         enter
         sense.holding $0
         push.local $0
-        jump.unless +8
+        jump.unless +9
         error.raise e
+        error.due e
         call fix
         push.bool high
         store.global $restart
         push.bool high
         store.global $leaving
         jump +2
-        land -8
+        land -9
         join -2
         return
         ",
@@ -330,20 +337,21 @@ fn an_error_for_after_the_sequence_is_due_in_its_caller() {
         enter
         push.int 0
         store.local $rounds
-        join +8
+        join +9
         call inner
         push.raised e
-        jump.unless +10
+        jump.unless +11
+        error.due e
         jump.unless.local.lt.imm $rounds 3 +5
         call fix
         error.clear e
         add.local.imm $rounds 1
-        jump -8
+        jump -9
         land -5
         push.bool high
         store.global $leaving
         jump +4
-        land -10
+        land -11
         push.const 2.0
         wait
         join -4
@@ -390,18 +398,19 @@ fn what_is_due_after_main_is_due_in_the_start() {
         enter
         push.int 0
         store.local $rounds
-        join +8
+        join +9
         call main
         push.raised e
-        jump.unless +8
+        jump.unless +9
+        error.due e
         jump.unless.local.lt.imm $rounds 3 +5
         call fix
         error.clear e
         add.local.imm $rounds 1
-        jump -8
+        jump -9
         land -5
         jump +2
-        land -8
+        land -9
         join -2
         halt
         ",
@@ -460,8 +469,9 @@ fn a_recovery_does_not_begin_within_another() {
         "fix",
         "
         enter
-        join +24
+        join +25
         error.raise e
+        error.due e
         push.global $recovering
         jump.if +14
         jump.unless.local.lt.imm $rounds 3 +14
@@ -484,7 +494,7 @@ fn a_recovery_does_not_begin_within_another() {
         jump +4
         land -9
         add.local.imm $rounds 1
-        jump -24
+        jump -25
         land -4
         return
         ",
@@ -505,14 +515,15 @@ fn a_block_with_a_reverse_is_left_by_its_end() {
         "main",
         "
         enter
-        join +39
+        join +40
         block.begin
         push.int 0
         store.local $way
         sense.holding $0
         push.local $0
-        jump.unless +14
+        jump.unless +15
         error.raise e
+        error.due e
         jump.unless.local.lt.imm $rounds 3 +6
         call fix
         error.clear e
@@ -525,12 +536,12 @@ fn a_block_with_a_reverse_is_left_by_its_end() {
         push.int 1
         store.local $way
         jump +5
-        land -14
+        land -15
         push.const 1.0
         wait
         join -10
         join -5
-        block.skip -24
+        block.skip -25
         push.local $way
         jump.unless.eq.imm 1 +4
         push.bool high
@@ -544,7 +555,7 @@ fn a_block_with_a_reverse_is_left_by_its_end() {
         jump +4
         land -3
         add.local.imm $rounds 1
-        jump -39
+        jump -40
         land -4
         join -11
         return

@@ -34,11 +34,12 @@ fn an_act_is_followed_by_a_test_for_what_it_may_raise() {
         push.joints a
         move.joint
         push.raised e
-        jump.unless +4
+        jump.unless +5
+        error.due e
         push.bool high
         store.global $leaving
         jump +4
-        land -4
+        land -5
         push.const 1.0
         wait
         join -4
@@ -138,21 +139,22 @@ fn what_is_required_is_looked_at_again_when_the_action_is_done_again() {
         enter
         push.int 0
         store.local $rounds
-        join +9
+        join +10
         sense.input $0 1
         push.local $0
-        jump.if +11
+        jump.if +12
         error.raise e
+        error.due e
         jump.unless.local.lt.imm $rounds 2 +5
         call feed
         error.clear e
         add.local.imm $rounds 1
-        jump -9
+        jump -10
         land -5
         push.bool high
         store.global $leaving
         jump +2
-        land -11
+        land -12
         join -2
         return
         ",
@@ -173,7 +175,8 @@ fn an_error_that_its_own_recovery_may_raise_is_not_pending_meanwhile() {
         push.joints a
         move.joint
         push.raised e
-        jump.unless +17
+        jump.unless +18
+        error.due e
         error.clear e
         push.bool high
         store.global $recovering
@@ -190,7 +193,7 @@ fn an_error_that_its_own_recovery_may_raise_is_not_pending_meanwhile() {
         store.global $leaving
         jump +3
         land -7
-        join -17
+        join -18
         join -3
         return
         ",

@@ -92,6 +92,7 @@ impl Builder<'_> {
             feeders: self.feeders(file, &items, output_count, &mut inputs)?,
             chance: self.chance(file, output_count)?,
             falling: file.falling.as_ref().map(falling),
+            goals: self.goals(file, &tcp, (&items, &fixtures))?,
             items,
             fixtures,
             inputs,

@@ -3,6 +3,7 @@
 //! Units are in the names of the keys; a key that is not listed here is refused. Checks that need
 //! more than one value are made in `build`.
 
+use super::goal::GoalFile;
 use super::number::{
     BiasN, ChamferMm, CoordinateMm, ForceLimitN, ForceN, Friction, JointAccelerationDegPerS2,
     JointDeg, JointRad, JointSpeedDegPerS, NearDeg, NearMm, SampleS, SizeMm, SpreadDeg, SpreadMm,
@@ -44,6 +45,8 @@ pub(super) struct CellFile {
     #[serde(default)]
     pub(super) chance: ChanceFile,
     pub(super) falling: Option<FallingFile>,
+    #[serde(default)]
+    pub(super) goal: Vec<GoalFile>,
 }
 
 #[derive(Deserialize)]

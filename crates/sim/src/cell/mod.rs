@@ -8,6 +8,7 @@ mod build;
 mod code;
 mod error;
 mod file;
+mod goal;
 mod number;
 mod places;
 mod seat;
@@ -20,6 +21,7 @@ mod uncertainty_file;
 
 pub use code::CellCode;
 pub use error::CellError;
+pub use goal::{GoalEnd, GoalSpec};
 pub use places::CellPlaces;
 pub use uncertainty::{ChanceSpec, FallSpec, FeederSpec, InputFlaw, SlipSpec};
 
@@ -59,6 +61,8 @@ pub struct Cell {
     pub chance: ChanceSpec,
     /// When items fall; if none is said, never.
     pub falling: Option<FallSpec>,
+    /// What a finished assembly is.
+    pub goals: Vec<GoalSpec>,
 }
 
 /// The arm: where it starts and how far its joints turn.
@@ -333,6 +337,7 @@ impl Cell {
             feeders: Vec::new(),
             chance: ChanceSpec::default(),
             falling: None,
+            goals: Vec::new(),
         }
     }
 }

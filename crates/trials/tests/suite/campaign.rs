@@ -1,7 +1,7 @@
 //! What a campaign computes.
 
 use crate::toy::{PERSON_S, Toy, plan, records};
-use obverse_trials::{Part, Shard, merge, plots, summary, table};
+use obverse_trials::{Ending, Part, Plan, Record, Shard, Strategy, merge, plots, summary, table};
 
 #[test]
 fn a_campaign_does_not_depend_on_threads_or_shards() {
@@ -73,6 +73,40 @@ fn the_figures_are_those_of_the_case() {
         let helps = matches!(kind.cause.as_deref(), Some("cause 1" | "cause 2"));
         assert_eq!(kind.errors.recovered, if helps { kind.errors.count } else { 0 });
     }
+}
+
+/// An assembly that only seems to be right is worse than an error that was given up.
+#[test]
+fn what_ends_falsely_counts_for_nothing_and_is_said() {
+    let plan = plan("escalating,oracle", 300);
+    let mut records = records(&plan, Shard::WHOLE, 2);
+    let before = summary(&plan, &records);
+    let is_false = |record: &Record| {
+        record.strategy == Strategy::Escalating && !record.outcome.incidents.is_empty()
+    };
+    let changed = records.iter_mut().filter(|record| is_false(record)).map(|record| {
+        record.outcome.ending = Ending::FalseSuccess;
+        record.outcome.why = Some("`peg` in the hole of `block`: depth".to_owned());
+    });
+    let count = changed.count() as u64;
+    let after = summary(&plan, &records);
+    let ([escalating, oracle], before) = (&after.strategies[..], &before.strategies[0]) else {
+        panic!("{after:?}")
+    };
+    assert_eq!(before.all.recovered, count, "each of them went on past its error");
+    assert_eq!((escalating.all.recovered, escalating.all.count), (0, count));
+    assert_eq!((before.to_a_person, escalating.to_a_person), (0, count));
+    assert_eq!((escalating.false_successes, oracle.false_successes), (count, 0));
+    let table = table::draw(&after);
+    let row = format!("escalating  `peg` in the hole of `block`: depth  {count:>10}");
+    assert!(table.contains(&row), "{table}");
+    let endings = plots::plots(&plan, &after).remove(0);
+    assert!(endings.name == "endings.svg" && endings.svg.contains("seemingly"), "{endings:?}");
+    let unjudged = Plan { goals: 0, ..plan };
+    let table = table::draw(&summary(&unjudged, &records));
+    let cell = |row: &str, column| row.split_whitespace().nth(column).map(str::to_owned);
+    let falsely = table.lines().nth(1).and_then(|row| cell(row, 11));
+    assert_eq!(falsely.as_deref(), Some("-"), "nothing was judged: {table}");
 }
 
 #[test]

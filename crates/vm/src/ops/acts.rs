@@ -27,6 +27,8 @@ pub(crate) struct Acts<'a> {
     pub(crate) pc: u32,
     /// What is done otherwise than the program says.
     pub(crate) alteration: Option<&'a Alteration>,
+    /// Going back, where the motion began if it was made aside.
+    pub(crate) aside: Option<JointConfiguration>,
     /// Whether others go on while the task of a fork waits.
     pub(crate) may_rest: bool,
     /// What came of it so far.
@@ -38,6 +40,8 @@ pub(crate) struct Acts<'a> {
 pub(crate) struct Done {
     /// The report of the motion that it made.
     pub(crate) report: Option<MotionReport>,
+    /// Where the motion began that it made aside of where the program says.
+    pub(crate) aside: Option<JointConfiguration>,
     /// How long it had the workcell wait, in seconds.
     pub(crate) waited_s: f64,
     /// How long its task is still to wait while others go on, in seconds.

@@ -3,7 +3,7 @@
 //! What is recorded is where the joints were: a pose would leave the turn of the wrist open. Goals
 //! are absolute, counted from the recorded start, so that a motion that was interrupted can be
 //! commanded again in either direction. A motion reverses along the path it took, at the speed it
-//! had, unless the settings for going back say otherwise.
+//! had, unless the settings for going back say otherwise; one that was made aside, over both legs.
 
 use super::acts::Acts;
 use crate::alter::Alteration;
@@ -31,6 +31,7 @@ impl Acts<'_> {
         let (before, mut motion) = alteration.of(self.pc, motion);
         let Some(before) = before else { return Ok(motion) };
         self.cell.execute(&before)?;
+        self.done.aside = Some(self.cell.joints());
         if let Goal::Displaced { from, .. } | Goal::Turned { from, .. } = &mut motion.goal {
             *from = self.cell.joints();
         }
@@ -61,6 +62,19 @@ impl Acts<'_> {
         }
     }
 
+    /// Go back to where a motion began, and where it was made aside, by there: the way that it came.
+    fn go_back_from(
+        &mut self,
+        start: &Joints,
+        goal: impl Fn(&Joints) -> Goal,
+        path: Path,
+        limit_n: Option<f64>,
+    ) -> Result<(), Failure> {
+        let Some(aside) = self.aside else { return self.go_back(goal(start), path, limit_n) };
+        self.go_back(goal(&Joints(aside)), path, limit_n)?;
+        self.go_back(Goal::Joints(start.0), Path::Linear, limit_n)
+    }
+
     fn start(&self) -> Joints {
         Joints(self.cell.joints())
     }
@@ -89,7 +103,8 @@ macro_rules! motions {
                 let $this = self;
                 let _ = $this;
                 let limit_back = $limit_back;
-                $acts.go_back(Goal::Joints(start.0), $path, limit_back)
+                let goal = |from: &Joints| Goal::Joints(from.0);
+                $acts.go_back_from(start, goal, $path, limit_back)
             }
         }
     )*};
@@ -136,8 +151,8 @@ macro_rules! turns {
             }
 
             fn reverse(self, acts: &mut Acts<'_>, start: &Joints) -> Result<(), Failure> {
-                let back = turned(start, [0.0; 2], self.axis, self.frame);
-                acts.go_back(back, Path::Linear, None)
+                let goal = |from: &Joints| turned(from, [0.0; 2], self.axis, self.frame);
+                acts.go_back_from(start, goal, Path::Linear, None)
             }
         }
     )*};
