@@ -67,7 +67,8 @@ laws! {
         turns >= 12
         round_trips >= 100;
     wait_laws: waits_are_waited >= 10;
-    recovery_laws: goes_back_along_the_trail >= 60 recovers_within_bounds >= 5;
+    recovery_laws: goes_back_along_the_trail >= 60 recovers_within_bounds >= 5
+        keeps_the_trail_over_a_blocked_return >= 10 comes_back_to_what_was_left >= 10;
     preflight_laws: foretells >= 60 foretells_of_modules >= 10;
     format_laws: formats >= 100 cut_off >= 100;
     invert_laws:

@@ -11,7 +11,8 @@ use obverse_recovery::{
     Strategy, Teller, Unattended, drive, recover,
 };
 use obverse_sim::cell::InputRule;
-use obverse_sim::{Cell, FaultPlan, Sim};
+use obverse_sim::{Cell, FaultPlan, Sim, StopKind};
+use obverse_tape::Note;
 use obverse_vm::{Direction, Event, Limits, Machine, Observer};
 use obverse_workcell::{Arm, Clock, DigitalIo, Fault, Safety, Workcell};
 
@@ -52,6 +53,8 @@ fn cell(high_at_s: f64) -> Cell {
 }
 
 const NEVER_S: f64 = 1e9;
+/// More motions than any run here makes.
+const MOTIONS_MAX: u64 = 300;
 
 /// A run and what became of it.
 struct Run {
@@ -59,6 +62,8 @@ struct Run {
     incidents: Vec<Incident>,
     sim: Sim,
     steps: Steps,
+    /// What the tape says of recoveries, after going back.
+    notes: Vec<Note>,
     /// Whether going back from the end leads to the start, bit for bit.
     is_identical: bool,
 }
@@ -77,6 +82,10 @@ impl Run {
 #[derive(Default)]
 struct Steps {
     told: Vec<String>,
+    /// How far the tool was backed up, each time.
+    backed_up_m: Vec<Option<f64>>,
+    /// Whether a motion was to be made aside, at each attempt.
+    changes: Vec<bool>,
     forward: u64,
     reverse: u64,
 }
@@ -97,6 +106,13 @@ impl Teller for Steps {
         let text = format!("{step:?}");
         let word = text.split(|c: char| !c.is_alphanumeric()).next().unwrap_or_default();
         self.told.push(word.to_owned());
+        match step {
+            Step::InPlace { backed_up_m, .. } => self.backed_up_m.push(*backed_up_m),
+            Step::Again { change, .. } => {
+                self.changes.push(change.is_some_and(|change| change.aside.is_some()));
+            }
+            _ => {}
+        }
     }
 }
 
@@ -155,10 +171,18 @@ impl Case {
         let ending = recover(&mut machine, limits, &mut self.sim, &mut recovery, &mut steps);
         let incidents = recovery.incidents;
         let after = self.sim.clone();
-        self.sim.release();
-        let back = drive(&mut machine, Direction::Reverse, limits, &mut self.sim, &mut ());
+        let mut back = ending.clone();
+        for _ in 0..MOTIONS_MAX {
+            self.sim.release();
+            back = drive(&mut machine, Direction::Reverse, limits, &mut self.sim, &mut ());
+            if !matches!(back, Ending::Fault { .. }) {
+                break;
+            }
+        }
         let is_identical = back == Ending::AtStart && machine.digest(&self.sim) == start;
-        Run { ending, incidents, sim: after, steps, is_identical }
+        let notes = machine.tape().map(|tape| tape.notes().iter().cloned().collect());
+        let notes = notes.unwrap_or_default();
+        Run { ending, incidents, sim: after, steps, notes, is_identical }
     }
 }
 
@@ -243,9 +267,17 @@ fn each_bound_ends_it_and_is_named() {
     assert_eq!(run.depths().len(), 3);
     let run = bounded(obverse_bytecode::Bounds { time_s: Some(5.0), ..none });
     assert_eq!(run.outcome(), Outcome::GivenUp(GiveUp::Time(5.0)));
-    let run = bounded(obverse_bytecode::Bounds { distance_m: Some(0.05), ..none });
-    assert_eq!(run.outcome(), Outcome::GivenUp(GiveUp::Distance(0.05)));
-    assert!(run.depths().len() > 1);
+    // Each attempt goes 20 mm back and 20 mm forward again: a third would end at 120 mm.
+    let run = bounded(obverse_bytecode::Bounds { distance_m: Some(0.1), ..none });
+    assert_eq!(run.outcome(), Outcome::GivenUp(GiveUp::Distance(0.1)));
+    assert_eq!(run.depths().len(), 2);
+    assert!(run.sim.way_m() <= 0.02 + 0.1, "{} m", run.sim.way_m());
+    let run = bounded(obverse_bytecode::Bounds { distance_m: Some(0.03), ..none });
+    assert_eq!(run.outcome(), Outcome::GivenUp(GiveUp::Distance(0.03)));
+    assert_eq!(run.steps.reverse, 0, "what cannot fit is not begun");
+    let run = bounded(obverse_bytecode::Bounds { time_s: Some(0.5), ..none });
+    assert_eq!(run.outcome(), Outcome::GivenUp(GiveUp::Time(0.5)));
+    assert_eq!(run.steps.reverse, 0, "what cannot fit is not begun");
 }
 
 #[test]
@@ -308,10 +340,12 @@ fn each_strategy_does_what_it_is_called_for() {
 
     let fixed = with(Strategy::Fixed { actions: 2 });
     assert_eq!(fixed.depths(), [2; 8]);
-    assert!(!fixed.sim.output(5), "nothing but what the strategy does");
+    assert!(fixed.sim.output(5), "it replaces the depth, and not what follows");
 
     let escalating = with(Strategy::Escalating);
     assert_eq!(escalating.depths(), [1, 2, 3, 4, 5, 5, 5, 5]);
+    assert!(escalating.sim.output(5));
+    assert!(!retry.sim.output(5) && !stop.sim.output(5), "nothing but what the strategy does");
 
     let restart = with(Strategy::Restart { times: 2 });
     assert!(matches!(restart.ending, Ending::GivenUp { why: GiveUp::Attempts(2), .. }));
@@ -339,7 +373,8 @@ fn who_knows_what_will_come_goes_back_just_as_far() {
     let run = Case::new(&source, first_s + 0.5).with(Strategy::Oracle).run();
     assert_eq!((run.ending, run.incidents[0].depths()), (Ending::Finished, vec![1]));
     let never = Case::new(&source, NEVER_S).with(Strategy::Oracle).run();
-    assert!(matches!(never.ending, Ending::GivenUp { why: GiveUp::WouldNotHelp, .. }));
+    assert_eq!(never.outcome(), Outcome::GivenUp(GiveUp::WouldNotHelp));
+    assert!(matches!(never.ending, Ending::Unhandled(_)), "{:?}", never.ending);
     assert_eq!(never.steps.reverse, 0);
 }
 
@@ -407,6 +442,160 @@ fn a_fault_that_is_an_error_needs_a_release_and_is_taken_back_with_its_act() {
     let raised = stopped(1);
     assert_eq!(raised.steps.told[..2], ["Fault", "Released"]);
     assert!(raised.is_identical, "the half of the motion that was done is taken back");
+}
+
+/// What a fault in a program with a cleanup is followed by.
+const CLEANED_UP: &str = "
+error halted {
+  on stopped short
+  recover by reversing escalating up to 4 actions
+  give up after 3 times
+  otherwise using help
+  then return to action
+}
+sequence help { set 5 high }
+sequence main { set 2 high  move 10 mm up  move 20 mm up }
+cleanup { set 6 high  move 5 mm down  set 2 low }
+";
+
+/// Every motion stops short from an act on.
+fn stops_short_from(case: &mut Case, act: u64) {
+    for act in act..act + MOTIONS_MAX {
+        case.sim.inject_as(FaultPlan { act, fraction: 0.5 }, StopKind::Short);
+    }
+}
+
+#[test]
+fn a_way_back_that_stays_blocked_counts_and_what_follows_follows() {
+    let mut case = Case::new(CLEANED_UP, NEVER_S);
+    stops_short_from(&mut case, 1);
+    let run = case.run();
+    assert_eq!(run.incidents[0].attempts.len(), 3, "{:?}", run.incidents[0]);
+    assert_eq!(run.outcome(), Outcome::GivenUp(GiveUp::Attempts(3)));
+    assert!(matches!(run.ending, Ending::Unhandled(_)), "{:?}", run.ending);
+    assert!(run.sim.output(5), "otherwise using help");
+    assert!(run.sim.output(6) && !run.sim.output(2), "the cleanup, to its end");
+    assert!(run.is_identical);
+}
+
+#[test]
+fn a_fault_that_nobody_named_is_followed_by_the_cleanup_unless_the_arm_is_held() {
+    let stopped = |kind| {
+        let source = CLEANED_UP.replace("on stopped short", "");
+        let mut case = Case::new(&source, NEVER_S);
+        case.sim.inject_as(FaultPlan { act: 2, fraction: 0.5 }, kind);
+        case.run()
+    };
+    let run = stopped(StopKind::Short);
+    assert!(matches!(run.ending, Ending::Fault { .. }), "{:?}", run.ending);
+    assert!(run.sim.output(6) && !run.sim.output(2));
+    assert!(run.is_identical, "going back leads through what was left");
+    let held = stopped(StopKind::Protective);
+    assert!(matches!(held.ending, Ending::Fault { .. }), "{:?}", held.ending);
+    assert!(!held.sim.output(6) && held.sim.output(2) && held.sim.is_stopped());
+    assert!(held.is_identical);
+}
+
+#[test]
+fn the_cleanup_follows_whatever_the_strategy() {
+    let source = program("recover by reversing 4 actions") + "cleanup { set 6 high }\n";
+    for strategy in [
+        Strategy::Stop,
+        Strategy::Retry { times: 1 },
+        Strategy::BackUp { distance_m: 0.05, times: 1 },
+        Strategy::Restart { times: 1 },
+    ] {
+        let run = Case::new(&source, NEVER_S).with(strategy).run();
+        assert!(matches!(run.ending, Ending::GivenUp { .. }), "{strategy:?}: {:?}", run.ending);
+        assert!(run.sim.output(6), "{strategy:?}");
+    }
+}
+
+#[test]
+fn a_fault_in_the_cleanup_does_not_end_it() {
+    let mut case = Case::new(CLEANED_UP, NEVER_S);
+    // The acts: two outputs and three motions; the motion of the cleanup is the fifth.
+    case.sim.inject_as(FaultPlan { act: 4, fraction: 0.5 }, StopKind::Short);
+    let run = case.run();
+    assert!(matches!(run.ending, Ending::Fault { .. }), "{:?}", run.ending);
+    assert!(run.sim.output(6) && !run.sim.output(2), "{:?}", run.steps.told);
+    assert_eq!(run.steps.told, ["PassedOver"]);
+}
+
+#[test]
+fn an_incident_that_the_program_gave_up_in_stays_so_when_the_cleanup_begins() {
+    // The incident is at the last action, and is past when the cleanup begins.
+    let source =
+        program("recover by reversing escalating up to 4 actions") + "cleanup { set 6 high }";
+    let run = Case::new(&source, 3.5).run();
+    assert_eq!((run.ending.clone(), run.outcome()), (Ending::Finished, Outcome::Recovered));
+    let at = run.incidents[0].outcome.unwrap().1;
+    assert!(at <= run.sim.now_s());
+    let recovered = run.steps.told.iter().position(|told| told == "Recovered").unwrap();
+    assert_eq!(recovered + 1, run.steps.told.len());
+}
+
+#[test]
+fn an_explicit_recovery_is_not_taken_back_for_the_error_that_it_dealt_with() {
+    let source = "
+        error e { recover by reversing 1 action give up after 1 times otherwise using help
+          then return to action }
+        sequence help { set 5 high }
+        sequence main { move 10 mm up  if not input 0 { throw e }  set 6 high }
+    ";
+    let run = Case::new(source, NEVER_S).run();
+    let outcomes: Vec<Outcome> =
+        run.incidents.iter().map(|incident| incident.outcome.unwrap().0).collect();
+    assert_eq!(outcomes[0], Outcome::GivenUp(GiveUp::Attempts(1)));
+    assert!(outcomes[1..].iter().all(|it| *it == Outcome::GivenUp(GiveUp::Before)), "{outcomes:?}");
+    assert_eq!(run.steps.reverse, 1, "the move alone was taken back, once");
+}
+
+#[test]
+fn an_error_of_a_branch_is_that_of_its_own_action() {
+    let source = "
+        error e { recover by reversing 1 action, perturbed 5 mm give up after 1 times }
+        sequence main {
+          fork { move 100 mm up  move 100 mm down } and {
+            set 3 high
+            wait 1 s
+            if not input 0 { throw e }
+          }
+        }
+    ";
+    let run = Case::new(source, NEVER_S).run();
+    let incident = &run.incidents[0];
+    assert!(incident.place.contains("wait 1 s"), "{}", incident.place);
+    assert!(!run.steps.changes.contains(&true), "no motion of the other branch is made aside");
+    // What the other branch has done since is taken back with it.
+    assert_eq!(run.depths(), [2]);
+}
+
+#[test]
+fn backing_up_goes_as_far_as_it_goes_and_says_how_far() {
+    let source = program("recover by reversing 4 actions");
+    let far = Strategy::BackUp { distance_m: 3.0, times: 1 };
+    let run = Case::new(&source, NEVER_S).with(far).run();
+    let stop = Case::new(&source, NEVER_S).with(Strategy::Stop).run();
+    let [Some(told_m)] = run.steps.backed_up_m[..] else { panic!("{:?}", run.steps.backed_up_m) };
+    let gone_m = run.sim.way_m() - stop.sim.way_m();
+    assert!((told_m - gone_m).abs() < 1e-9 && told_m > 0.05 && told_m < 1.5, "{told_m} {gone_m}");
+}
+
+#[test]
+fn the_tape_notes_what_happened_in_recoveries_and_going_back_takes_nothing_from_it() {
+    let run = run("recover by reversing escalating up to 4 actions, slower", 3.5);
+    let noted: Vec<String> = run
+        .notes
+        .iter()
+        .map(|note| format!("{:?}", note.what))
+        .map(|text| text.split(|c: char| !c.is_alphanumeric()).next().unwrap().to_owned())
+        .collect();
+    let attempts = run.incidents[0].attempts.len();
+    assert_eq!(noted.len(), 2 * attempts + 1, "{noted:?}");
+    assert_eq!(noted[..2], ["Back", "Again"]);
+    assert_eq!(noted.last().map(String::as_str), Some("Recovered"));
+    assert!(run.is_identical);
 }
 
 #[test]

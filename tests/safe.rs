@@ -1,13 +1,14 @@
 //! Whatever is stopped wherever, and by whatever strategy it is met: a run ends in success or in a
-//! give-up that has a name, with the arm held; nothing goes back over what cannot be taken back;
-//! and where it ended it can be gone back from.
+//! give-up that has a name; the cleanup has been gone through, unless the arm is held; nothing goes
+//! back over what cannot be taken back; and where it ended it can be gone back from, to the state
+//! that the program began in.
 //!
 //! Every program is run with a stop of every kind at drawn acts, in either direction. `SAFE_RUNS`
 //! sets how many runs there are of each program, over all strategies.
 
-use obverse_bytecode::{FaultName, Verified, verify};
+use obverse_bytecode::{ErrorDeclaration, FaultName, Severity, Verified, verify};
 use obverse_compiler::compile_files;
-use obverse_isa::Class;
+use obverse_isa::{Class, Instr};
 use obverse_recovery::{
     Bounds, Clairvoyant, Ending, Memory, Operator, Recovery, Step, Strategy, Teller, drive, recover,
 };
@@ -66,9 +67,12 @@ fn load(path: &Path) -> Program {
     let compiled = compile_files(&name, &text, &mut files);
     let mut module =
         compiled.module.unwrap_or_else(|| panic!("{name}: {:#?}", compiled.diagnostics));
-    // Where a program has an error and names no fault, its first one is raised by some.
+    // Where a program has an error and names no fault, its first one is raised by some; but not by a
+    // warning, which would let it go on as if nothing had happened, and wait for ever for what did
+    // not.
     let names_faults = module.errors.iter().any(|error| !error.faults.is_empty());
-    if let (false, Some(error)) = (names_faults, module.errors.first_mut()) {
+    let is_more = |error: &&mut ErrorDeclaration| error.severity != Severity::Warning;
+    if let (false, Some(error)) = (names_faults, module.errors.iter_mut().find(is_more)) {
         error.faults = vec![FaultName::ProtectiveStop, FaultName::StoppedShort];
     }
     let cell = folder.join(module.cell.as_ref().unwrap());
@@ -88,9 +92,16 @@ impl Operator for Releases {
     }
 }
 
-/// Watches that nothing goes back over what cannot be taken back.
+/// Watches that nothing goes back over what cannot be taken back, and that the cleanup is gone
+/// through.
 #[derive(Default)]
 struct Guard {
+    /// The function of the cleanup, if there is one.
+    cleanup: Option<u16>,
+    /// Whether the start went on behind it.
+    is_cleaned_up: bool,
+    /// What the start has called last.
+    called: Option<u16>,
     /// How many instructions lay before what was passed last that cannot be taken back.
     floor_steps: u64,
     crossed: Option<u32>,
@@ -99,6 +110,14 @@ struct Guard {
 impl Observer for Guard {
     fn on_event(&mut self, event: &Event, _: &dyn Workcell) {
         let is_never = matches!(event.instr.info().class, Class::Never(_));
+        match event.instr {
+            // Back in the start.
+            Instr::Return {} if event.frames == 1 => {
+                self.is_cleaned_up = self.called == self.cleanup;
+            }
+            Instr::Call { function, .. } if event.frames == 2 => self.called = Some(function.0),
+            _ => {}
+        }
         match event.direction {
             Direction::Forward if is_never && event.open_blocks == 0 => {
                 self.floor_steps = event.steps;
@@ -131,7 +150,10 @@ fn run(program: &Program, number: u64, memory: &mut Memory) {
     let case =
         || format!("{} {number}: {strategy:?}, {stops:?}, {releases} releases", program.name);
     let mut machine = Machine::new(&program.verified, &sim).unwrap();
-    let mut guard = Guard::default();
+    let module = program.verified.module();
+    let mut guard = Guard { cleanup: module.cleanup, ..Guard::default() };
+    let unmoved = Sim::new(&program.cell, 0);
+    let start = machine.digest(&unmoved);
     let mut recovery = Recovery {
         strategy,
         bounds: Bounds::default(),
@@ -152,25 +174,31 @@ fn run(program: &Program, number: u64, memory: &mut Memory) {
     );
     assert!(is_named, "{}: {ending:?}", case());
     assert_eq!(guard.crossed, None, "{}: gone back over a never", case());
-    let errors = &program.verified.module().errors;
+    let is_safe = module.cleanup.is_none() || guard.is_cleaned_up || sim.is_stopped();
+    assert!(is_safe, "{}: {ending:?} without the cleanup", case());
+    let errors = &module.errors;
     for incident in incidents {
         let most = errors[incident.error.index()].bounds.attempts;
         let most = most.unwrap_or(Bounds::default().attempts) as usize;
         assert!(incident.attempts.len() <= most, "{}: {incident:?}", case());
     }
-    go_back(&mut machine, &mut sim, &case);
+    if go_back(&mut machine, &mut sim, &case) {
+        assert_eq!(machine.digest(&unmoved), start, "{}: the program's state", case());
+    }
 }
 
-/// From wherever a run ended there is a way back: released whenever it is stopped.
-fn go_back(machine: &mut Machine<'_>, sim: &mut Sim, case: &dyn Fn() -> String) {
+/// From wherever a run ended there is a way back: released whenever it is stopped. Whether it led to
+/// the start.
+fn go_back(machine: &mut Machine<'_>, sim: &mut Sim, case: &dyn Fn() -> String) -> bool {
     let mut blocked = 0;
     loop {
         sim.release();
         match drive(machine, Direction::Reverse, Limits::NONE, sim, &mut ()) {
-            Ending::AtStart | Ending::Refused(_) => return,
+            Ending::AtStart => return true,
+            Ending::Refused(_) => return false,
             // What stands in the way in the world, where the arm was moved in place or by hand.
             Ending::Fault { fault: Fault::Collision { .. } | Fault::ForceLimit { .. }, .. } => {
-                return;
+                return false;
             }
             Ending::Fault { .. } if blocked < 8 => blocked += 1,
             other => panic!("{}: back: {other:?}", case()),

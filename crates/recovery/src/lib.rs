@@ -10,8 +10,10 @@
 //! an error (`place`, `fault`); [`depth`], how far to go back next; [`memory`], what
 //! was learned of that, and `belief`, what follows; [`foresight`], who would know better;
 //! [`change`], what is done otherwise on
-//! the way forward again; [`tell`], what a person is told; [`mod@recover`], the loop.
+//! the way forward again; [`tell`], what a person is told, and the tape (`noted`); [`mod@recover`],
+//! the loop, and `attempt`, one way back and forward again in it.
 
+mod attempt;
 mod belief;
 pub mod change;
 pub mod depth;
@@ -21,6 +23,7 @@ mod fault;
 pub mod foresight;
 pub mod incident;
 pub mod memory;
+mod noted;
 mod place;
 pub mod recover;
 pub mod strategy;

@@ -11,7 +11,7 @@ use serde::{Deserialize, Serialize};
 
 /// A tape file.
 pub const TAPE: Format =
-    Format { magic: *b"OBVTAPE\0", version: 3, name: "tape", remedy: "record the run again" };
+    Format { magic: *b"OBVTAPE\0", version: 4, name: "tape", remedy: "record the run again" };
 
 /// The content of a tape file.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]

@@ -1,5 +1,7 @@
 //! The tape: its streams, positions on it, the barrier, and how much it has recorded.
 
+use crate::file::Snapshot;
+use crate::note::{Note, Notes};
 use crate::stream::{BitStream, CHUNK, Stream};
 use obverse_geometry::JointConfiguration;
 
@@ -65,6 +67,10 @@ pub struct Tape {
     pub(crate) joints: Stream<[f64; 6]>,
     pub(crate) control: Stream<u64>,
     pub(crate) faults: Stream<u64>,
+    /// The state in which all that was under way was left for the cleanup, if it was.
+    left: Option<Box<Snapshot>>,
+    /// What happened in recoveries; going back takes nothing from it.
+    notes: Notes,
     /// What has been recorded and dropped, in bits.
     dropped_bits: u64,
     /// The most full chunks that may be held, each as large as one of words.
@@ -115,6 +121,8 @@ impl Tape {
             joints: Stream::default(),
             control: Stream::default(),
             faults: Stream::default(),
+            left: None,
+            notes: Notes::default(),
             dropped_bits: 0,
             limit_chunks: limit_bytes / (CHUNK * 8),
         }
@@ -177,6 +185,35 @@ impl Tape {
     /// Nothing before this can be reversed: drop it.
     pub fn barrier(&mut self) {
         self.cut(Place::default());
+        self.left = None;
+    }
+
+    /// All that was under way is left for the cleanup, in this state.
+    pub fn leave(&mut self, state: Snapshot) {
+        self.left = Some(Box::new(state));
+    }
+
+    /// How many instructions lay between the start and where all was left, if it was.
+    #[inline]
+    #[must_use]
+    pub fn left_steps(&self) -> Option<u64> {
+        self.left.as_ref().map(|state| state.steps)
+    }
+
+    /// The state in which all was left; the tape keeps it no more.
+    pub fn take_left(&mut self) -> Option<Snapshot> {
+        self.left.take().map(|state| *state)
+    }
+
+    /// Note what happened in a recovery.
+    pub fn note(&mut self, note: Note) {
+        self.notes.push(note);
+    }
+
+    /// What happened in recoveries.
+    #[must_use]
+    pub fn notes(&self) -> &Notes {
+        &self.notes
     }
 
     /// All that was recorded, whether it has been dropped or not, in bits; what has been reversed
@@ -227,6 +264,8 @@ impl Tape {
             joints: self.joints.iter().collect(),
             control: self.control.iter().collect(),
             faults: self.faults.iter().collect(),
+            left: self.left.clone(),
+            notes: self.notes.clone(),
             dropped_bits: self.dropped_bits,
         }
     }
@@ -240,6 +279,8 @@ impl Tape {
             joints: streams.joints.iter().copied().collect(),
             control: streams.control.iter().copied().collect(),
             faults: streams.faults.iter().copied().collect(),
+            left: streams.left.clone(),
+            notes: streams.notes.clone(),
             dropped_bits: streams.dropped_bits,
             limit_chunks: DEFAULT_LIMIT_BYTES / (CHUNK * 8),
         }
@@ -259,6 +300,10 @@ pub struct Streams {
     pub control: Vec<u64>,
     /// Words on the faults that became errors.
     pub faults: Vec<u64>,
+    /// The state in which all that was under way was left for the cleanup, if it was.
+    pub left: Option<Box<Snapshot>>,
+    /// What happened in recoveries.
+    pub notes: Notes,
     /// What was recorded before and dropped, in bits.
     pub dropped_bits: u64,
 }

@@ -20,6 +20,7 @@ pub mod class;
 pub mod convert;
 mod fault;
 mod hot;
+mod leave;
 pub mod link;
 pub mod machine;
 pub mod observe;
