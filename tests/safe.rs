@@ -67,9 +67,9 @@ fn load(path: &Path) -> Program {
     let compiled = compile_files(&name, &text, &mut files);
     let mut module =
         compiled.module.unwrap_or_else(|| panic!("{name}: {:#?}", compiled.diagnostics));
-    // Where a program has an error and names no fault, its first one is raised by some; but not by a
-    // warning, which would let it go on as if nothing had happened, and wait for ever for what did
-    // not.
+    // Where a program has an error and names no fault, its first one is raised by some; but no
+    // warning is, which would let it go on as if nothing had happened, and wait for ever for what
+    // did not.
     let names_faults = module.errors.iter().any(|error| !error.faults.is_empty());
     let is_more = |error: &&mut ErrorDeclaration| error.severity != Severity::Warning;
     if let (false, Some(error)) = (names_faults, module.errors.iter_mut().find(is_more)) {
@@ -187,8 +187,8 @@ fn run(program: &Program, number: u64, memory: &mut Memory) {
     }
 }
 
-/// From wherever a run ended there is a way back: released whenever it is stopped. Whether it led to
-/// the start.
+/// From wherever a run ended there is a way back: released whenever it is stopped. Whether it led
+/// to the start.
 fn go_back(machine: &mut Machine<'_>, sim: &mut Sim, case: &dyn Fn() -> String) -> bool {
     let mut blocked = 0;
     loop {

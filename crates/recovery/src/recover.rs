@@ -139,8 +139,9 @@ pub(crate) struct Run<'r, 'p, 'o, C> {
     amiss: Option<Ending>,
 }
 
-/// An error that was given up where it was due. What the program does about it then is counted in its own
-/// variables, which going back would restore: so there is no going back for it until it is past.
+/// An error that was given up where it was due. What the program does about it then is counted in
+/// its own variables, which going back would restore, and is not to be taken back with them: so
+/// there is no going back for it until it is past.
 struct GivenUp {
     error: ErrorId,
     pc: u32,

@@ -30,9 +30,9 @@ impl Machine<'_> {
         true
     }
 
-    /// Go on behind the act at hand, which a fault has stopped: it counts as done as far as it came.
-    /// Whether it could be: nothing is done unless an act of the program itself was stopped going
-    /// forward, and the workcell lets a toggle be finished.
+    /// Go on behind the act at hand, which a fault has stopped: it counts as done as far as it
+    /// came. Whether it could be: nothing is done unless an act of the program itself was stopped
+    /// going forward, and the workcell lets a toggle be finished.
     pub fn pass_over_fault(&mut self, cell: &mut dyn Workcell) -> bool {
         let Some(Pending { direction: Direction::Forward, level_before }) = self.state.pending
         else {

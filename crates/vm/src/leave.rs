@@ -1,7 +1,7 @@
 //! Leaving all that is under way for the cleanup, where the code has no way there of its own.
 //!
-//! The tape keeps the whole state that was left, so that going back leads into it again, an act that
-//! was half done included. When a run is left is not known here.
+//! The tape keeps the whole state that was left, so that going back leads into it again, an act
+//! that was half done included. When a run is left is not known here.
 
 use crate::machine::Machine;
 use crate::stop::{Stop, Trap, TrapKind};

@@ -24,3 +24,4 @@ mod reversal_words;
 mod shortfalls;
 mod statements;
 mod turns;
+mod vain;
