@@ -85,7 +85,9 @@ fn forward<C: Workcell>(
             Ok(()) | Err(Stop::Raised { .. }) => {}
             Err(Stop::Finished) if machine.state().raised().is_empty() => break,
             Err(Stop::Due { error, pc }) => {
-                let is_again = (error, pc) == (site.incident.error, site.incident.pc);
+                let newest = watch.0.newest_of(&site.incident.branches);
+                let entry = newest.map_or(pc, |action| action.entry);
+                let is_again = site.incident.is_again(error, pc, entry);
                 return Some(if is_again { Leads::Again } else { Leads::Elsewhere });
             }
             Err(Stop::Fault { fault, pc, .. }) if !cell.is_stopped() => {

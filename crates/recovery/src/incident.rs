@@ -1,8 +1,8 @@
 //! An error at a place, and what has been tried against it.
 //!
 //! An incident is open from when its error is due until the run has passed the action that failed,
-//! or gives it up. The same error due at the same instruction while it is open is the same
-//! incident.
+//! or gives it up. The same error due at the same instruction, or in the same action, while
+//! it is open is the same incident.
 
 use crate::ending::GiveUp;
 use crate::trail::Trail;
@@ -88,6 +88,13 @@ impl Incident {
     #[must_use]
     pub fn depths(&self) -> Vec<usize> {
         self.attempts.iter().map(|attempt| attempt.actions).collect()
+    }
+
+    /// Whether an error that is due at an instruction, in the action of an entry, is this one: at
+    /// the same instruction, or in the same action.
+    #[must_use]
+    pub fn is_again(&self, error: ErrorId, pc: u32, entry: u32) -> bool {
+        self.error == error && (self.pc == pc || self.entry == entry)
     }
 
     /// Whether the run has begun an action behind the one that failed.

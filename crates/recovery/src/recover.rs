@@ -309,15 +309,15 @@ impl<'p, C: Workcell> Run<'_, 'p, '_, C> {
         let branches = self.machine.state().branches();
         let newest = self.trail.newest_of(&branches);
         let number = newest.map_or(self.trail.count(), |action| action.number);
-        let is_it = |open: &Incident| (open.error, open.pc) == (error, pc);
-        if let Some(index) = self.open.iter().position(is_it) {
+        let entry = newest.map_or(pc, |action| action.entry);
+        if let Some(index) = self.open.iter().position(|open| open.is_again(error, pc, entry)) {
             self.open[index].number = number;
             return index;
         }
         self.open.push(Incident {
             error,
             pc,
-            entry: newest.map_or(pc, |action| action.entry),
+            entry,
             branches: branches.clone(),
             is_in_cleanup: self.machine.is_cleaning_up(),
             place: place(self.module(), newest.map_or(pc, |action| action.pc)),
@@ -402,8 +402,8 @@ impl<'p, C: Workcell> Run<'_, 'p, '_, C> {
     fn check_progress(&mut self, index: usize) -> Result<(), GiveUp> {
         let trail = &self.trail;
         self.given_up.retain(|old| !trail.is_past(old.number, old.entry, old.depth));
-        let Incident { error, pc, .. } = self.open[index];
-        if self.given_up.iter().any(|old| (old.error, old.pc) == (error, pc)) {
+        let incident = &self.open[index];
+        if self.given_up.iter().any(|old| incident.is_again(old.error, old.pc, old.entry)) {
             return Err(GiveUp::Before);
         }
         if trail.count() > self.furthest {
