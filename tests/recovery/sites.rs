@@ -1,4 +1,4 @@
-//! Where an error is due, whose action it is, how far the tool really went, and what the tape keeps.
+//! Where an error is due, whose action it is, how far the tool really went, and what a tape keeps.
 
 use super::*;
 
