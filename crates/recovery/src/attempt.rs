@@ -8,6 +8,7 @@ use crate::incident::Attempt;
 use crate::recover::{Plan, Run, Watch, reversal};
 use crate::tell::{Step, Why};
 use obverse_geometry::{Axis, Frame};
+use obverse_isa::Instr;
 use obverse_vm::{Direction, Mark, Stop};
 use obverse_workcell::{Goal, Motion, Path, Speed, Workcell};
 
@@ -92,7 +93,7 @@ impl<C: Workcell> Run<'_, '_, '_, C> {
     /// The trail ends before the act whose return is blocked: how many of so many actions have been
     /// taken back.
     fn cut_into_act(&mut self, count: usize, pc: u32) -> usize {
-        let prefix = self.module().code.get(pc as usize).map_or(0, |instr| instr.prefix());
+        let prefix = self.module().code.get(pc as usize).map_or(0, Instr::prefix);
         let before = self.machine.state().steps().saturating_sub(1 + u64::from(prefix));
         self.trail.cut_into(before, pc);
         count - self.trail.actions().len()

@@ -7,6 +7,7 @@ use crate::machine::Machine;
 use crate::stop::{Stop, Trap, TrapKind};
 use obverse_bytecode::Module;
 use obverse_isa::Instr;
+use obverse_tape::Tape;
 use obverse_workcell::Workcell;
 
 impl Machine<'_> {
@@ -52,7 +53,7 @@ impl Machine<'_> {
         if self.came_from_leaving() != Some(self.state.steps()) {
             return Ok(false);
         }
-        let Some(left) = self.tape.as_mut().and_then(|tape| tape.take_left()) else {
+        let Some(left) = self.tape.as_mut().and_then(Tape::take_left) else {
             return Ok(false);
         };
         let trap = Trap { pc: self.state.pc(), kind: TrapKind::Foreign };
