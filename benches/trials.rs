@@ -19,6 +19,7 @@ fn plan() -> Plan {
         program_digest: String::new(),
         cell_digest: String::new(),
         memory_digest: None,
+        goals: 0,
         strategies: vec![Strategy::Explicit],
         seed: 0,
         runs: RUNS,

@@ -5,7 +5,7 @@
 
 use arbitrary::Unstructured;
 use obverse_bytecode::{disassemble, encode, verify};
-use obverse_tape::TapeFile;
+use obverse_tape::{Note, Noted, TapeFile};
 use obverse_testkit::code::{self, Options};
 use obverse_testkit::{Ledger, altered, hostile, programs};
 use obverse_vm::{Direction, Limits, Machine};
@@ -139,7 +139,22 @@ fn recordings_with_altered_bytes() {
         let program = verify(module(random)).expect("it verifies");
         let mut cell = Ledger::new(1);
         let mut machine = Machine::new(&program, &cell).expect("it links");
-        machine.run(Direction::Forward, Limits::instructions(200), &mut cell, &mut ());
+        let mut run = |machine: &mut Machine<'_>| {
+            machine.run(Direction::Forward, Limits::instructions(100), &mut cell, &mut ());
+            machine.snapshot(&cell)
+        };
+        let (left, state) = (run(&mut machine), run(&mut machine));
+        machine.note(Note {
+            steps: 1,
+            time_s: 0.5,
+            error: 0,
+            pc: 1,
+            attempts: 1,
+            what: Noted::Back { actions: 2, to: 1 },
+        });
+        let mut streams = machine.streams();
+        // As if all had been left for a cleanup then.
+        streams.left = (random.below(2) == 0).then(|| Box::new(left));
         let module = encode(program.module()).expect("its bytes");
         let file = TapeFile {
             fingerprint: obverse_bytecode::fingerprint(&module),
@@ -147,8 +162,8 @@ fn recordings_with_altered_bytes() {
             module,
             seed: 1,
             ending: String::new(),
-            state: machine.snapshot(&cell),
-            streams: machine.streams(),
+            state,
+            streams,
         };
         let bytes = file.to_bytes().expect("its bytes");
         let payload = &bytes[obverse_bytecode::codec::HEADER_BYTES..];

@@ -1,14 +1,15 @@
 //! Whatever is stopped wherever, and by whatever strategy it is met: a run ends in success or in a
-//! give-up that has a name, with the arm held; nothing goes back over what cannot be taken back;
-//! and where it ended it can be gone back from.
+//! give-up that has a name; the cleanup has been gone through, unless the arm is held; nothing goes
+//! back over what cannot be taken back; and where it ended it can be gone back from, to the state
+//! that the program began in.
 //!
 //! Every program is run with faults of every kind that there is at drawn acts, in either direction,
 //! also while a recovery is under way. `SAFE_RUNS` sets how many runs there are of each program,
 //! over all strategies.
 
-use obverse_bytecode::{FaultName, Verified, verify};
+use obverse_bytecode::{ErrorDeclaration, FaultName, Severity, Verified, verify};
 use obverse_compiler::compile_files;
-use obverse_isa::{Class, Family};
+use obverse_isa::{Class, Family, Instr};
 use obverse_recovery::{
     Bounds, Clairvoyant, Ending, Memory, Operator, Recovery, Step, Strategy, Teller, drive, recover,
 };
@@ -57,9 +58,12 @@ fn load(path: &Path) -> Program {
     let compiled = compile_files(&name, &text, &mut files);
     let mut module =
         compiled.module.unwrap_or_else(|| panic!("{name}: {:#?}", compiled.diagnostics));
-    // Where a program has an error and names no fault, its first one is raised by all of them.
+    // Where a program has an error and names no fault, its first one is raised by all of them; but
+    // no warning is, which would let it go on as if nothing had happened, and wait for ever for what
+    // did not.
     let names_faults = module.errors.iter().any(|error| !error.faults.is_empty());
-    if let (false, Some(error)) = (names_faults, module.errors.first_mut()) {
+    let is_more = |error: &&mut ErrorDeclaration| error.severity != Severity::Warning;
+    if let (false, Some(error)) = (names_faults, module.errors.iter_mut().find(is_more)) {
         error.faults = FaultName::ALL.to_vec();
     }
     let cell = folder.join(module.cell.as_ref().unwrap());
@@ -82,9 +86,14 @@ impl Operator for Releases {
 /// A kind of fault, what the act was that met it, and which way.
 type Met = (FaultKind, Family, bool);
 
-/// Watches that nothing goes back over what cannot be taken back, and which faults are met where.
+/// Watches that nothing goes back over what cannot be taken back, that the cleanup is gone through,
+/// and which faults are met where.
 struct Guard<'p> {
     program: &'p Program,
+    /// Whether the start went on behind the cleanup.
+    is_cleaned_up: bool,
+    /// What the start has called last.
+    called: Option<u16>,
     /// How many instructions lay before what was passed last that cannot be taken back.
     floor_steps: u64,
     crossed: Option<u32>,
@@ -101,6 +110,14 @@ impl Guard<'_> {
 impl Observer for Guard<'_> {
     fn on_event(&mut self, event: &Event, _: &dyn Workcell) {
         let is_never = matches!(event.instr.info().class, Class::Never(_));
+        match event.instr {
+            // Back in the start.
+            Instr::Return {} if event.frames == 1 => {
+                self.is_cleaned_up = self.called == self.program.verified.module().cleanup;
+            }
+            Instr::Call { function, .. } if event.frames == 2 => self.called = Some(function.0),
+            _ => {}
+        }
         match event.direction {
             Direction::Forward if is_never && event.open_blocks == 0 => {
                 self.floor_steps = event.steps;
@@ -138,7 +155,16 @@ fn run(program: &Program, number: u64, memory: &mut Memory) -> BTreeSet<Met> {
     let case =
         || format!("{} {number}: {strategy:?}, {faults:?}, {releases} releases", program.name);
     let mut machine = Machine::new(&program.verified, &cell).unwrap();
-    let mut guard = Guard { program, floor_steps: 0, crossed: None, met: BTreeSet::new() };
+    let mut guard = Guard {
+        program,
+        is_cleaned_up: false,
+        called: None,
+        floor_steps: 0,
+        crossed: None,
+        met: BTreeSet::new(),
+    };
+    let unmoved = Sim::new(&program.cell, 0);
+    let start = machine.digest(&unmoved);
     let mut recovery = Recovery {
         strategy,
         bounds: Bounds::default(),
@@ -159,7 +185,10 @@ fn run(program: &Program, number: u64, memory: &mut Memory) -> BTreeSet<Met> {
     );
     assert!(is_named, "{}: {ending:?}", case());
     assert_eq!(guard.crossed, None, "{}: gone back over a never", case());
-    let errors = &program.verified.module().errors;
+    let module = program.verified.module();
+    let is_safe = module.cleanup.is_none() || guard.is_cleaned_up || cell.is_stopped();
+    assert!(is_safe, "{}: {ending:?} without the cleanup", case());
+    let errors = &module.errors;
     for incident in incidents {
         let most = errors[incident.error.index()].bounds.attempts;
         let most = most.unwrap_or(Bounds::default().attempts) as usize;
@@ -168,7 +197,9 @@ fn run(program: &Program, number: u64, memory: &mut Memory) -> BTreeSet<Met> {
     if let Ending::Fault { fault, pc, direction } = &ending {
         guard.meet(fault, *pc, *direction);
     }
-    go_back(&mut machine, &mut cell, strategy, &mut guard, &case);
+    if go_back(&mut machine, &mut cell, strategy, &mut guard, &case) {
+        assert_eq!(machine.digest(&unmoved), start, "{}: the program's state", case());
+    }
     guard.met
 }
 
@@ -183,20 +214,22 @@ fn is_in_the_way(fault: &Fault, strategy: Strategy) -> bool {
     }
 }
 
-/// From wherever a run ended there is a way back: released whenever it is stopped.
+/// From wherever a run ended there is a way back: released whenever it is stopped. Whether it led
+/// to the start.
 fn go_back(
     machine: &mut Machine<'_>,
     cell: &mut Faulty,
     strategy: Strategy,
     guard: &mut Guard<'_>,
     case: &dyn Fn() -> String,
-) {
+) -> bool {
     let mut in_the_way = None;
     // More often than there are planned faults left.
     for _ in 0..6 {
         cell.release();
         match drive(machine, Direction::Reverse, Limits::NONE, cell, &mut ()) {
-            Ending::AtStart | Ending::Refused(_) => return,
+            Ending::AtStart => return true,
+            Ending::Refused(_) => return false,
             Ending::Fault { fault, pc, direction } => {
                 guard.meet(&fault, pc, direction);
                 in_the_way = Some(fault);
@@ -206,6 +239,7 @@ fn go_back(
     }
     let is_world = in_the_way.as_ref().is_some_and(|fault| is_in_the_way(fault, strategy));
     assert!(is_world, "{}: back: {in_the_way:?}", case());
+    false
 }
 
 /// So many runs of each program; which faults were met where.

@@ -122,6 +122,7 @@ impl Teller for Report<'_> {
 fn code(step: &Step<'_>) -> &'static str {
     match step {
         Step::Fault { .. } => "fault",
+        Step::PassedOver { .. } => "passed_over",
         Step::Released => "released",
         Step::Back { .. } => "back",
         Step::RoundTrip { .. } => "round_trip",
@@ -130,6 +131,7 @@ fn code(step: &Step<'_>) -> &'static str {
         Step::Again { .. } => "again",
         Step::Recovered { .. } => "recovered",
         Step::GivenUp { .. } => "given_up",
+        Step::Operator { .. } => "operator",
     }
 }
 
@@ -145,12 +147,14 @@ fn details(module: &Module, step: &Step<'_>) -> Vec<(&'static str, Value)> {
         }
         Step::RoundTrip { pc, .. } => vec![("at", report::place(module, Some(*pc)))],
         Step::InPlace { backed_up_m, .. } => vec![("backed_up_m", json!(backed_up_m))],
-        Step::Blocked { fault, pc, .. } => {
+        Step::Blocked { fault, pc, .. } | Step::PassedOver { fault, pc } => {
             vec![("fault", json!(fault.kind().code())), ("at", report::place(module, Some(*pc)))]
         }
         Step::GivenUp { why, .. } => vec![("why", json!(why.code()))],
         Step::Again { change: Some(change), .. } => vec![("change", json!(changed(*change)))],
-        Step::Again { .. } | Step::Released | Step::Recovered { .. } => Vec::new(),
+        Step::Again { .. } | Step::Released | Step::Recovered { .. } | Step::Operator { .. } => {
+            Vec::new()
+        }
     };
     let incident = match step {
         Step::Back { incident, .. }
@@ -159,8 +163,9 @@ fn details(module: &Module, step: &Step<'_>) -> Vec<(&'static str, Value)> {
         | Step::Blocked { incident, .. }
         | Step::Again { incident, .. }
         | Step::Recovered { incident }
-        | Step::GivenUp { incident, .. } => incident,
-        Step::Fault { .. } | Step::Released => return details,
+        | Step::GivenUp { incident, .. }
+        | Step::Operator { incident } => incident,
+        Step::Fault { .. } | Step::PassedOver { .. } | Step::Released => return details,
     };
     details.push(("error", json!(name(module, incident))));
     details.push(("place", json!(incident.place)));
@@ -180,6 +185,9 @@ fn words(module: &Module, step: &Step<'_>) -> String {
             let error = &module.errors[error.index()].name;
             format!("{} is error {error}: {fault}", report::line_of(module, *pc))
         }
+        Step::PassedOver { fault, pc } => {
+            format!("the cleanup goes on behind {}: {fault}", report::line_of(module, *pc))
+        }
         Step::Released => "released by hand".to_owned(),
         Step::Back { incident, actions, to, why } => {
             let to = format!("`{}` ({})", story::said(module, *to), report::line_of(module, *to));
@@ -194,7 +202,7 @@ fn words(module: &Module, step: &Step<'_>) -> String {
         }
         Step::InPlace { incident, backed_up_m: Some(distance_m) } => {
             let far_mm = distance_m * 1e3;
-            format!("{}: back up {far_mm:.0} mm, and again", name(module, incident))
+            format!("{}: backed up {far_mm:.0} mm, and again", name(module, incident))
         }
         Step::Blocked { pc, fault, .. } => {
             let place = report::line_of(module, *pc);
@@ -220,6 +228,9 @@ fn words(module: &Module, step: &Step<'_>) -> String {
         }
         Step::GivenUp { incident, why } => {
             format!("{} is given up: {why}", name(module, incident))
+        }
+        Step::Operator { incident } => {
+            format!("an operator is called: {} at {}", name(module, incident), incident.place)
         }
     }
 }

@@ -183,7 +183,7 @@ pub(crate) fn ending_words(module: &Module, ending: &Ending) -> String {
         }
         Ending::GivenUp { error, pc, why } => {
             let error = &module.errors[error.index()].name;
-            format!("held by error {error}, due at {}: {why}", line_of(module, *pc))
+            format!("stopped by error {error}, due at {}: {why}", line_of(module, *pc))
         }
         Ending::AtStart => "back at the start".to_owned(),
         Ending::Budget => "stopped at the limit of instructions; `--limit` sets another".to_owned(),

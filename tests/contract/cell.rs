@@ -66,6 +66,10 @@ impl Arm for Cell {
     fn last_motion(&self) -> MotionReport {
         self.last
     }
+
+    fn way_m(&self) -> f64 {
+        self.ledger.way_m()
+    }
 }
 
 impl Safety for Cell {

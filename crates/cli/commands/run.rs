@@ -12,7 +12,7 @@ use obverse_recovery::{Bounds, Ending, Incident, Memory, Recovery, drive, recove
 use obverse_sim::{Missed, Sim};
 use obverse_tape::TapeFile;
 use obverse_vm::{Direction, Limits, Machine};
-use obverse_workcell::Clock;
+use obverse_workcell::{Clock, Safety};
 use serde_json::{Map, json};
 use std::path::PathBuf;
 
@@ -207,6 +207,7 @@ fn finish(
     let words = report::ending_words(module, ending);
     if arguments.json {
         let mut more = Map::new();
+        more.insert("held".to_owned(), json!(cell.is_stopped()));
         more.insert("message".to_owned(), json!(words));
         more.insert("errors".to_owned(), report::pending(machine));
         more.insert("incidents".to_owned(), recovering::incidents(module, incidents));
@@ -224,6 +225,9 @@ fn finish(
     }
     for missed in missed {
         write::line(&format!("  {missed}"));
+    }
+    if cell.is_stopped() {
+        write::line("the arm is held: it needs a release (`--release N` gives so many beforehand)");
     }
     write::line(&figures_line(machine, cell));
 }

@@ -32,6 +32,7 @@ mod tree;
 mod types;
 mod units;
 mod uses;
+mod vain;
 
 pub use load::{Loader, MAX_IMPORT_DEPTH, MAX_IMPORTED};
 pub use parameters::{Action, Defaults, Parameter};
@@ -127,17 +128,18 @@ struct Lowered {
 /// The module of a syntax tree whose places are those of the sources.
 fn compile_tree(
     sources: &Sources,
-    program: &Program<'_>,
+    tree: &Program<'_>,
     defaults: &Defaults,
     reports: Reports,
 ) -> Lowered {
-    let Checked { program, actions, types, mut reports } =
-        check::check(sources, program, defaults, reports);
-    let module = program.filter(|_| reports.is_whole()).and_then(|program| {
+    let Checked { program: checked, actions, types, mut reports } =
+        check::check(sources, tree, defaults, reports);
+    let module = checked.filter(|_| reports.is_whole()).and_then(|program| {
         let effects = Effects::of(&program);
         reversal::check(&program, &effects, &mut reports);
         forks::check(&program, &effects, &mut reports);
         recursion::check(&program, &effects, &mut reports);
+        vain::check(tree, &program, &effects, &mut reports);
         match reports.has_errors() {
             true => None,
             false => lower::lower(program, sources, &effects, &mut reports),

@@ -155,6 +155,7 @@ pub(crate) fn world(cell: &impl Workcell) -> World {
         held: cell.held(),
         force_n: cell.force_n(),
         last_motion: cell.last_motion(),
+        way_m: cell.way_m(),
         now_s: cell.now_s(),
         is_stopped: cell.is_stopped(),
     }
@@ -183,8 +184,9 @@ impl<C: Workcell> Arm for Recorder<'_, C> {
 
     fn execute(&mut self, motion: &Motion) -> Result<MotionReport, Fault> {
         let result = self.cell.execute(motion);
-        let (joints, last) = (self.cell.joints(), self.cell.last_motion());
-        self.log.motions.push(Moved { motion: *motion, joints, last });
+        let (joints, last, way_m) =
+            (self.cell.joints(), self.cell.last_motion(), self.cell.way_m());
+        self.log.motions.push(Moved { motion: *motion, joints, last, way_m });
         let index = (self.log.motions.len() - 1) as u32;
         self.note(Command::Execute(index), result.as_ref().err());
         result
@@ -192,6 +194,10 @@ impl<C: Workcell> Arm for Recorder<'_, C> {
 
     fn last_motion(&self) -> MotionReport {
         self.cell.last_motion()
+    }
+
+    fn way_m(&self) -> f64 {
+        self.cell.way_m()
     }
 }
 

@@ -72,6 +72,8 @@ pub struct World {
     pub force_n: f64,
     /// What came of the last motion.
     pub last_motion: MotionReport,
+    /// How far the tool has gone in all motions, in metres.
+    pub way_m: f64,
     /// The workcell's clock, in seconds.
     pub now_s: f64,
     /// Whether a stop holds the arm.
@@ -137,6 +139,8 @@ pub struct Moved {
     pub joints: JointConfiguration,
     /// What the workcell reported as the last motion then.
     pub last: MotionReport,
+    /// How far the tool had gone in all motions then, in metres.
+    pub way_m: f64,
 }
 
 /// Something that is read.
@@ -203,6 +207,7 @@ impl Log {
                 if let Some(moved) = self.motions.get(index as usize) {
                     world.joints = moved.joints;
                     world.last_motion = moved.last;
+                    world.way_m = moved.way_m;
                 }
             }
             Command::Output { bit, became, .. } => {

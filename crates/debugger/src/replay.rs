@@ -159,6 +159,10 @@ impl Arm for Replay<'_> {
     fn last_motion(&self) -> MotionReport {
         self.cursor.world.last_motion
     }
+
+    fn way_m(&self) -> f64 {
+        self.cursor.world.way_m
+    }
 }
 
 impl Safety for Replay<'_> {

@@ -22,7 +22,7 @@ pub(crate) fn of_incident(
     seed: u64,
 ) -> Option<Alteration> {
     let attempt = incident.attempts.len() as u32 + 1;
-    let motion = trail.actions().last().and_then(Action::motion);
+    let motion = trail.newest_of(&incident.branches).and_then(Action::motion);
     of_attempt(policy, attempt, search.point, motion, seed ^ incident.number)
 }
 

@@ -80,14 +80,14 @@ fn forward<C: Workcell>(
     site: &Site<'_, '_, C>,
 ) -> Option<Leads> {
     let allowed = machine.executed().saturating_add(STEPS_MAX);
-    while watch.0.count() <= site.incident.number + 1 && machine.executed() < allowed {
+    while !site.incident.is_past(&watch.0) && machine.executed() < allowed {
         match machine.step(Direction::Forward, cell, watch) {
             Ok(()) | Err(Stop::Raised { .. }) => {}
             Err(Stop::Finished) if machine.state().raised().is_empty() => break,
-            Err(Stop::Due { error, .. }) => {
-                let entry = watch.0.actions().last().map(|action| action.entry);
-                let known = (site.incident.error, Some(site.incident.entry));
-                let is_again = (error, entry) == known;
+            Err(Stop::Due { error, pc }) => {
+                let newest = watch.0.newest_of(&site.incident.branches);
+                let entry = newest.map_or(pc, |action| action.entry);
+                let is_again = site.incident.is_again(error, pc, entry);
                 return Some(if is_again { Leads::Again } else { Leads::Elsewhere });
             }
             Err(Stop::Fault { fault, pc, .. }) if !cell.is_stopped() => {

@@ -1,7 +1,8 @@
 //! An error at a place, and what has been tried against it.
 //!
 //! An incident is open from when its error is due until the run has passed the action that failed,
-//! or gives it up. The same error at the same place while it is open is the same incident.
+//! or gives it up. The same error due at the same instruction, or in the same action, while
+//! it is open is the same incident.
 
 use crate::ending::GiveUp;
 use crate::trail::Trail;
@@ -68,6 +69,10 @@ pub struct Incident {
     pub number: u64,
     /// The source entry of the action that failed, by its first instruction.
     pub entry: u32,
+    /// The branches in which it was due.
+    pub branches: Vec<usize>,
+    /// Whether it was due in the cleanup.
+    pub is_in_cleanup: bool,
     /// When it was due first, in seconds of the workcell's clock.
     pub began_s: f64,
     /// How far the arm had gone by then, in metres.
@@ -83,6 +88,19 @@ impl Incident {
     #[must_use]
     pub fn depths(&self) -> Vec<usize> {
         self.attempts.iter().map(|attempt| attempt.actions).collect()
+    }
+
+    /// Whether an error that is due at an instruction, in the action of an entry, is this one: at
+    /// the same instruction, or in the same action.
+    #[must_use]
+    pub fn is_again(&self, error: ErrorId, pc: u32, entry: u32) -> bool {
+        self.error == error && (self.pc == pc || self.entry == entry)
+    }
+
+    /// Whether the run has begun an action behind the one that failed.
+    #[must_use]
+    pub fn is_past(&self, trail: &Trail<'_>) -> bool {
+        trail.has_passed(self.number, self.entry, &self.branches)
     }
 
     /// Where the next attempt searches, if it goes back so many actions of the trail.

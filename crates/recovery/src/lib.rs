@@ -7,12 +7,13 @@
 //! Reading order: [`ending`], how a run ends; [`mod@drive`], a run that never goes back by itself;
 //! [`trail`], what it may be taken back to; [`strategy`], the ways of recovering; [`incident`], an
 //! error at a place and what has been tried, with the words for a place, a fault that becomes an
-//! error and what the program asks for (`place`, `fault`, `asked`); [`depth`], how far to go back next; [`memory`], what
-//! was learned of that, and `belief`, what follows; [`foresight`], who would know better;
-//! [`change`], what is done otherwise on
-//! the way forward again; [`tell`], what a person is told; [`mod@recover`], the loop.
+//! error and what the program asks for (`place`, `fault`, `asked`); [`depth`], how far to go back
+//! next; [`memory`], what was learned of that, and `belief`, what follows; [`foresight`], who would
+//! know better; [`change`], what is done otherwise on the way forward again; [`tell`], what a person is told, and the tape (`noted`); [`mod@recover`],
+//! the loop, and `attempt`, one way back and forward again in it.
 
 mod asked;
+mod attempt;
 mod belief;
 pub mod change;
 pub mod depth;
@@ -22,6 +23,7 @@ mod fault;
 pub mod foresight;
 pub mod incident;
 pub mod memory;
+mod noted;
 mod place;
 pub mod recover;
 pub mod strategy;

@@ -8,20 +8,18 @@ use crate::ending::{Ending, GiveUp};
 use crate::fault;
 use crate::incident::{Attempt, Incident, Outcome};
 use crate::memory::Memory;
+use crate::noted;
 use crate::place::place;
 use crate::strategy::{Bounds, Strategy};
 use crate::tell::{Operator, Step, Teller, Why};
-use crate::trail::Trail;
-use obverse_bytecode::{Depth, ErrorDeclaration, Module, Reversal};
-use obverse_geometry::{Axis, Frame};
+use crate::trail::{Action, Trail};
+use obverse_bytecode::{Depth, ErrorDeclaration, Module, Otherwise, Reversal};
 use obverse_isa::ErrorId;
-use obverse_vm::{Alteration, Direction, Event, Limits, Machine, Mark, Observer, Stop};
-use obverse_workcell::{Fault, Goal, Motion, Path, Speed, Workcell};
+use obverse_vm::{Alteration, Direction, Event, Limits, Machine, Observer, Stop};
+use obverse_workcell::{Fault, Workcell};
 
 /// How many attempts there may be, at whatever errors, without the run ever getting further.
 const STUCK_ATTEMPTS: u32 = 64;
-/// How often a way back that is blocked is tried again.
-const BLOCKED_TRIES: u32 = 2;
 
 /// What a run recovers with.
 pub struct Recovery<'r, C> {
@@ -108,6 +106,9 @@ pub fn recover<C: Workcell>(
         given_up: Vec::new(),
         furthest: 0,
         attempts: 0,
+        is_stopping: false,
+        left: None,
+        amiss: None,
     };
     let ending = run.until_ended(begin.saturating_add(limits.instructions));
     run.close_all(&ending);
@@ -115,26 +116,34 @@ pub fn recover<C: Workcell>(
 }
 
 /// A run under way.
-struct Run<'r, 'p, 'o, C> {
-    machine: &'r mut Machine<'p>,
-    cell: &'r mut C,
-    recovery: &'r mut Recovery<'o, C>,
-    teller: &'r mut dyn Teller,
-    trail: Trail<'p>,
+pub(crate) struct Run<'r, 'p, 'o, C> {
+    pub(crate) machine: &'r mut Machine<'p>,
+    pub(crate) cell: &'r mut C,
+    pub(crate) recovery: &'r mut Recovery<'o, C>,
+    pub(crate) teller: &'r mut dyn Teller,
+    pub(crate) trail: Trail<'p>,
     /// The incidents that are open, innermost last.
-    open: Vec<Incident>,
+    pub(crate) open: Vec<Incident>,
     /// Errors that were given up where the run goes on without going back.
     given_up: Vec<GivenUp>,
     /// The most actions that the run has ever begun.
     furthest: u64,
     /// How many attempts there have been since it was last that far.
-    attempts: u32,
+    pub(crate) attempts: u32,
+    /// Whether the program has come to its end with errors pending.
+    is_stopping: bool,
+    /// How the run ended, where all was left for the cleanup.
+    left: Option<Ending>,
+    /// What was passed over in the cleanup first.
+    amiss: Option<Ending>,
 }
 
-/// An error that was given up at a place. What the program does about it then is counted in its own
-/// variables, which going back would restore: so there is no going back for it until it is past.
+/// An error that was given up where it was due. What the program does about it then is counted in
+/// its own variables, which going back would restore, and is not to be taken back with them: so
+/// there is no going back for it until it is past.
 struct GivenUp {
     error: ErrorId,
+    pc: u32,
     entry: u32,
     number: u64,
     /// How many calls were under way where it was due.
@@ -142,9 +151,9 @@ struct GivenUp {
 }
 
 /// Tells events on, and notes them on the trail.
-struct Watch<'w, 'm> {
-    trail: &'w mut Trail<'m>,
-    teller: &'w mut dyn Teller,
+pub(crate) struct Watch<'w, 'm> {
+    pub(crate) trail: &'w mut Trail<'m>,
+    pub(crate) teller: &'w mut dyn Teller,
 }
 
 impl Observer for Watch<'_, '_> {
@@ -155,14 +164,14 @@ impl Observer for Watch<'_, '_> {
 }
 
 /// What to do about an error that is due.
-enum Plan {
+pub(crate) enum Plan {
     Back { actions: usize, why: Why },
     InPlace { backed_up_m: Option<f64> },
     Restart,
 }
 
 impl<'p, C: Workcell> Run<'_, 'p, '_, C> {
-    fn module(&self) -> &'p Module {
+    pub(crate) fn module(&self) -> &'p Module {
         self.machine.program().module()
     }
 
@@ -176,22 +185,44 @@ impl<'p, C: Workcell> Run<'_, 'p, '_, C> {
                 Stop::Fault { fault, pc, direction: Direction::Forward } => self.fault(fault, pc),
                 stop => drive::ending(stop, self.machine),
             };
-            if let Some(ending) = ended {
+            if let Some(ending) = ended.and_then(|ending| self.clean_up(ending)) {
                 return ending;
             }
         }
     }
 
+    /// How the run ended, if it has: wherever it was, what is left of it is the cleanup. It is left
+    /// out where a stop holds the arm, and where the run was cut off.
+    fn clean_up(&mut self, ending: Ending) -> Option<Ending> {
+        match ending {
+            Ending::Budget => return Some(ending),
+            Ending::Finished => {
+                return Some(self.left.take().or(self.amiss.take()).unwrap_or(ending));
+            }
+            Ending::Unhandled(_) => return Some(self.left.take().unwrap_or(ending)),
+            _ => {}
+        }
+        if self.cell.is_stopped() || !self.machine.leave(self.cell) {
+            return Some(self.left.take().unwrap_or(ending));
+        }
+        self.machine.alter(None);
+        self.close_all(&ending);
+        self.trail.begin_anew();
+        self.left = Some(ending);
+        None
+    }
+
     /// Forward until something stops it. While an error is open the machine goes step by step, so
     /// that it does as the program says again as soon as it is past.
     fn forward(&mut self, left: u64) -> Stop {
+        let was_cleaning_up = self.machine.is_cleaning_up();
         let mut watch = Watch { trail: &mut self.trail, teller: &mut *self.teller };
         let Some(incident) = self.open.last() else {
             let limits = Limits::instructions(left);
             return self.machine.run(Direction::Forward, limits, self.cell, &mut watch);
         };
         let allowed = self.machine.executed().saturating_add(left);
-        while watch.trail.count() <= incident.number + 1 {
+        while !incident.is_past(watch.trail) && self.machine.is_cleaning_up() == was_cleaning_up {
             if self.machine.executed() >= allowed {
                 return Stop::Budget;
             }
@@ -199,6 +230,8 @@ impl<'p, C: Workcell> Run<'_, 'p, '_, C> {
                 Ok(()) | Err(Stop::Raised { .. }) => {}
                 Err(stop) => return stop,
             }
+            let state = self.machine.state();
+            self.is_stopping |= state.frames().len() == 1 && !state.raised().is_empty();
         }
         Stop::Raised { error: incident.error, pc: incident.pc }
     }
@@ -206,25 +239,54 @@ impl<'p, C: Workcell> Run<'_, 'p, '_, C> {
     /// A fault that the program names becomes an error of it.
     fn fault(&mut self, fault: Fault, pc: u32) -> Option<Ending> {
         let direction = Direction::Forward;
-        let error = fault::error_of(self.module(), &fault);
-        let raised = error.filter(|error| {
-            let step = Step::Fault { fault: &fault, pc, error: *error };
-            self.teller.on_step(&step, self.cell);
-            self.may_move(&fault)
-                && fault::raise(self.machine, *error, pc, self.cell, &mut self.trail)
-        });
-        if raised.is_some() { None } else { Some(Ending::Fault { fault, pc, direction }) }
+        let is_passed = if self.machine.is_cleaning_up() {
+            self.pass_over(&fault, pc)
+        } else {
+            let error = fault::error_of(self.module(), &fault);
+            error.is_some_and(|error| self.raise(&fault, pc, error))
+        };
+        if is_passed { None } else { Some(Ending::Fault { fault, pc, direction }) }
+    }
+
+    /// Let a fault be an error of the program. Whether it could be.
+    pub(crate) fn raise(&mut self, fault: &Fault, pc: u32, error: ErrorId) -> bool {
+        self.say(&Step::Fault { fault, pc, error });
+        self.may_move(fault) && fault::raise(self.machine, error, pc, self.cell, &mut self.trail)
+    }
+
+    /// The cleanup goes on behind what a fault has stopped in it. Whether it can.
+    fn pass_over(&mut self, fault: &Fault, pc: u32) -> bool {
+        self.say(&Step::PassedOver { fault, pc });
+        let is_passed = self.may_move(fault) && self.machine.pass_over_fault(self.cell);
+        let (fault, direction) = (fault.clone(), Direction::Forward);
+        self.amiss.get_or_insert(Ending::Fault { fault, pc, direction });
+        is_passed
+    }
+
+    /// Tell a step, and note it on the tape.
+    pub(crate) fn say(&mut self, step: &Step<'_>) {
+        noted::say(self.machine, self.teller, self.cell, step);
+    }
+
+    /// Tell a step about the incident of a number, and note it on the tape.
+    pub(crate) fn say_of<'s>(
+        &'s mut self,
+        index: usize,
+        step: impl FnOnce(&'s Incident) -> Step<'s>,
+    ) {
+        let step = step(&self.open[index]);
+        noted::say(self.machine, self.teller, self.cell, &step);
     }
 
     /// Whether the arm may move; after a stop, only by a fresh command.
-    fn may_move(&mut self, fault: &Fault) -> bool {
+    pub(crate) fn may_move(&mut self, fault: &Fault) -> bool {
         if !self.cell.is_stopped() {
             return true;
         }
         let is_released = self.recovery.operator.release(fault);
         if is_released {
             self.cell.release();
-            self.teller.on_step(&Step::Released, self.cell);
+            self.say(&Step::Released);
         }
         is_released
     }
@@ -232,7 +294,8 @@ impl<'p, C: Workcell> Run<'_, 'p, '_, C> {
     /// An error is due: go back for it, or give it up.
     fn due(&mut self, error: ErrorId, pc: u32) -> Option<Ending> {
         let index = self.incident(error, pc);
-        let planned = self.plan(index);
+        let planned =
+            self.plan(index).and_then(|plan| self.check_fits(index, &plan).map(|()| plan));
         let done = planned.and_then(|plan| self.carry_out(index, plan));
         match done {
             Ok(()) => None,
@@ -242,22 +305,24 @@ impl<'p, C: Workcell> Run<'_, 'p, '_, C> {
 
     /// The incident of an error that is due: the open one at the same place, or a new one.
     fn incident(&mut self, error: ErrorId, pc: u32) -> usize {
-        let newest = self.trail.actions().last();
-        let entry = newest.map_or(pc, |action| action.entry);
+        let branches = self.machine.state().branches();
+        let newest = self.trail.newest_of(&branches);
         let number = newest.map_or(self.trail.count(), |action| action.number);
-        let is_it = |open: &Incident| open.error == error && open.entry == entry;
-        if let Some(index) = self.open.iter().position(is_it) {
+        let entry = newest.map_or(pc, |action| action.entry);
+        if let Some(index) = self.open.iter().position(|open| open.is_again(error, pc, entry)) {
             self.open[index].number = number;
             return index;
         }
         self.open.push(Incident {
             error,
             pc,
+            entry,
+            branches: branches.clone(),
+            is_in_cleanup: self.machine.is_cleaning_up(),
             place: place(self.module(), newest.map_or(pc, |action| action.pc)),
             number,
-            entry,
             began_s: self.cell.now_s(),
-            began_way_m: self.trail.way_m(),
+            began_way_m: self.cell.way_m(),
             attempts: Vec::new(),
             outcome: None,
         });
@@ -311,6 +376,10 @@ impl<'p, C: Workcell> Run<'_, 'p, '_, C> {
             attempts_left: self.attempts_left(incident),
         };
         let (actions, why) = question.answer(asked, self.recovery.memory)?;
+        // What other branches have done since is taken back with it.
+        let actions = actions.max(self.trail.back_to_newest_of(&incident.branches));
+        let before = incident.attempts.last().map_or(0, |attempt| attempt.actions);
+        let why = if why == Why::Further && actions <= before { Why::Said } else { why };
         Ok(Plan::Back { actions, why })
     }
 
@@ -333,8 +402,8 @@ impl<'p, C: Workcell> Run<'_, 'p, '_, C> {
     fn check_progress(&mut self, index: usize) -> Result<(), GiveUp> {
         let trail = &self.trail;
         self.given_up.retain(|old| !trail.is_past(old.number, old.entry, old.depth));
-        let Incident { error, entry, .. } = self.open[index];
-        if self.given_up.iter().any(|old| (old.error, old.entry) == (error, entry)) {
+        let incident = &self.open[index];
+        if self.given_up.iter().any(|old| incident.is_again(old.error, old.pc, old.entry)) {
             return Err(GiveUp::Before);
         }
         if trail.count() > self.furthest {
@@ -353,7 +422,32 @@ impl<'p, C: Workcell> Run<'_, 'p, '_, C> {
             Err(GiveUp::Attempts(attempts))
         } else if self.cell.now_s() - incident.began_s >= time_s {
             Err(GiveUp::Time(time_s))
-        } else if self.trail.way_m() - incident.began_way_m >= distance_m {
+        } else if self.cell.way_m() - incident.began_way_m >= distance_m {
+            Err(GiveUp::Distance(distance_m))
+        } else {
+            Ok(())
+        }
+    }
+
+    /// An attempt that would go beyond a bound, by what it took so far, is not begun.
+    fn check_fits(&self, index: usize, plan: &Plan) -> Result<(), GiveUp> {
+        let incident = &self.open[index];
+        let Bounds { time_s, distance_m, .. } = self.bounds(incident);
+        let actions = self.trail.actions();
+        let since = |action: Option<&Action>| {
+            action.map(|action| {
+                (self.cell.now_s() - action.began_s, self.cell.way_m() - action.began_way_m)
+            })
+        };
+        let takes = match plan {
+            Plan::Back { actions, .. } => self.trail.there_and_back(*actions, self.cell),
+            Plan::InPlace { .. } => since(actions.last()),
+            Plan::Restart => since(actions.first()),
+        };
+        let (takes_s, way_m) = takes.unwrap_or_default();
+        if self.cell.now_s() - incident.began_s + takes_s > time_s {
+            Err(GiveUp::Time(time_s))
+        } else if self.cell.way_m() - incident.began_way_m + way_m > distance_m {
             Err(GiveUp::Distance(distance_m))
         } else {
             Ok(())
@@ -375,133 +469,8 @@ impl<'p, C: Workcell> Run<'_, 'p, '_, C> {
         }
     }
 
-    fn declared(&self, incident: &Incident) -> &'p ErrorDeclaration {
+    pub(crate) fn declared(&self, incident: &Incident) -> &'p ErrorDeclaration {
         &self.module().errors[incident.error.index()]
-    }
-
-    fn carry_out(&mut self, index: usize, plan: Plan) -> Result<(), GiveUp> {
-        let incident = &self.open[index];
-        let began_s = self.cell.now_s();
-        let actions = if let Plan::Back { actions, .. } = plan { actions } else { 0 };
-        let search = incident.next_search(&self.trail, actions);
-        let policy = reversal(self.declared(incident)).filter(|_| actions > 0);
-        let seed = self.recovery.seed;
-        let change = policy
-            .and_then(|policy| change::of_incident(policy, incident, &self.trail, search, seed));
-        match plan {
-            Plan::Back { actions, why } => self.back(index, actions, why)?,
-            Plan::InPlace { backed_up_m } => self.in_place(index, backed_up_m)?,
-            Plan::Restart => self.restart(index)?,
-        }
-        self.machine.alter(change);
-        self.attempts += 1;
-        self.open[index].attempts.push(Attempt { actions, began_s, search });
-        let step = Step::Again { incident: &self.open[index], change };
-        self.teller.on_step(&step, self.cell);
-        Ok(())
-    }
-
-    /// Take the run back, in the world.
-    fn back(&mut self, index: usize, actions: usize, why: Why) -> Result<(), GiveUp> {
-        let known = self.trail.actions();
-        let Some(to) = known.len().checked_sub(actions).and_then(|at| known.get(at)) else {
-            return Err(GiveUp::NoWayBack { never: self.trail.never() });
-        };
-        let (mark, pc) = (to.steps, to.pc);
-        let incident = &self.open[index];
-        self.teller.on_step(&Step::Back { incident, actions, to: pc, why }, self.cell);
-        self.pass_round_trip(index, mark)?;
-        let mut tries = 0;
-        loop {
-            let mut watch = Watch { trail: &mut self.trail, teller: &mut *self.teller };
-            match self.machine.reverse_to(Mark::at(mark), self.cell, &mut watch) {
-                Stop::AtMark | Stop::OffMark | Stop::AtStart => {
-                    self.trail.cut(self.machine.state().steps());
-                    return Ok(());
-                }
-                Stop::Fault { fault, pc, .. } => {
-                    let step = Step::Blocked { incident: &self.open[index], fault: &fault, pc };
-                    self.teller.on_step(&step, self.cell);
-                    if !self.may_move(&fault) {
-                        return Err(GiveUp::Blocked);
-                    }
-                    tries += 1;
-                    if tries > BLOCKED_TRIES {
-                        return self.forward_from_there();
-                    }
-                }
-                _ => return Err(GiveUp::NoWayBack { never: self.trail.never() }),
-            }
-        }
-    }
-
-    /// Motions that ended where they began are taken back in the program alone: going there again
-    /// and back would press anew on what had stopped them, for nothing.
-    fn pass_round_trip(&mut self, index: usize, since: u64) -> Result<(), GiveUp> {
-        let Some(motion) = self.trail.round_trip(since, &self.cell.joints()) else {
-            return Ok(());
-        };
-        let (steps, pc) = (motion.steps, motion.pc);
-        let step = Step::RoundTrip { incident: &self.open[index], pc };
-        self.teller.on_step(&step, self.cell);
-        self.unwind(steps)
-    }
-
-    /// The way back is blocked: what was half undone is done again, and the run goes forward from
-    /// there.
-    fn forward_from_there(&mut self) -> Result<(), GiveUp> {
-        self.trail.cut(self.machine.state().steps());
-        let mut watch = Watch { trail: &mut self.trail, teller: &mut *self.teller };
-        match self.machine.step(Direction::Forward, self.cell, &mut watch) {
-            Ok(()) | Err(Stop::Raised { .. }) => Ok(()),
-            Err(_) => Err(GiveUp::Blocked),
-        }
-    }
-
-    /// Take the program alone back to the start of the action that failed.
-    fn in_place(&mut self, index: usize, backed_up_m: Option<f64>) -> Result<(), GiveUp> {
-        let Some(action) = self.trail.actions().last() else {
-            return Err(GiveUp::NoWayBack { never: self.trail.never() });
-        };
-        let steps = action.steps;
-        let step = Step::InPlace { incident: &self.open[index], backed_up_m };
-        self.teller.on_step(&step, self.cell);
-        if let Some(distance_m) = backed_up_m {
-            self.back_up(distance_m);
-        }
-        self.unwind(steps)
-    }
-
-    /// The tool straight back, as far as it goes.
-    fn back_up(&mut self, distance_m: f64) {
-        let from = self.cell.joints();
-        let goal = Goal::Displaced { from, distance_m, axis: Axis::MinusZ, frame: Frame::Tcp };
-        let tool = self.cell.initial_tool();
-        let motion =
-            Motion { goal, path: Path::Linear, speed: Speed::Normal, tool, force_limit_n: None };
-        // One that cannot be made is left out, as the recoveries do that this stands for.
-        if let Err(fault) = self.cell.execute(&motion) {
-            self.may_move(&fault);
-        }
-    }
-
-    fn restart(&mut self, index: usize) -> Result<(), GiveUp> {
-        if let Some(never) = self.trail.never() {
-            return Err(GiveUp::NoWayBack { never: Some(never) });
-        }
-        let step = Step::InPlace { incident: &self.open[index], backed_up_m: None };
-        self.teller.on_step(&step, self.cell);
-        self.unwind(0)
-    }
-
-    fn unwind(&mut self, steps: u64) -> Result<(), GiveUp> {
-        match self.machine.unwind_to(Mark::at(steps), self.cell) {
-            Ok(()) | Err(Stop::AtStart) => {
-                self.trail.cut(self.machine.state().steps());
-                Ok(())
-            }
-            Err(_) => Err(GiveUp::NoWayBack { never: self.trail.never() }),
-        }
     }
 
     fn give_up(&mut self, index: usize, why: GiveUp) -> Option<Ending> {
@@ -509,28 +478,37 @@ impl<'p, C: Workcell> Run<'_, 'p, '_, C> {
         let incident = self.open.remove(index);
         let Incident { error, pc, entry, number, .. } = incident;
         let depth = self.machine.state().frames().len();
-        self.given_up.push(GivenUp { error, entry, number, depth });
-        if why != GiveUp::NoRecovery {
-            self.teller.on_step(&Step::GivenUp { incident: &incident, why }, self.cell);
+        self.given_up.push(GivenUp { error, pc, entry, number, depth });
+        // Where the program asks for nothing, there is nothing to tell.
+        let is_asked = why != GiveUp::NoRecovery;
+        let follows = self.recovery.strategy.goes_on_when_given_up() || !is_asked;
+        if is_asked {
+            self.say(&Step::GivenUp { incident: &incident, why });
+        }
+        if !follows || self.declared(&incident).otherwise == Otherwise::Operator {
+            self.say(&Step::Operator { incident: &incident });
         }
         self.close(incident, Outcome::GivenUp(why));
-        // What was raised is still due: the code behind it is what follows.
+        // Where it is due, the code behind it is what follows; elsewhere there is none.
         let is_due = self.machine.state().raised().contains(&error);
-        let is_programs =
-            self.recovery.strategy.goes_on_when_given_up() || why == GiveUp::NoRecovery;
-        let goes_on = is_programs && is_due;
+        let goes_on = follows && is_due && self.machine.state().pc() == pc + 1;
         if goes_on { None } else { Some(Ending::GivenUp { error, pc, why }) }
     }
 
     /// The errors that the run has got past are open no more.
     fn close_passed(&mut self) {
+        let is_cleaning_up = self.machine.is_cleaning_up();
         while let Some(incident) = self.open.last() {
-            if self.trail.count() <= incident.number + 1 {
+            let is_over = is_cleaning_up && !incident.is_in_cleanup;
+            if !is_over && !incident.is_past(&self.trail) {
                 return;
             }
             self.machine.alter(None);
+            let is_vain = is_over && self.is_stopping;
+            let outcome =
+                if is_vain { Outcome::GivenUp(GiveUp::Strategy) } else { Outcome::Recovered };
             if let Some(incident) = self.open.pop() {
-                self.close(incident, Outcome::Recovered);
+                self.close(incident, outcome);
             }
         }
     }
@@ -553,7 +531,7 @@ impl<'p, C: Workcell> Run<'_, 'p, '_, C> {
             self.recovery.memory.learn(error, &incident.place, &depths, was_enough);
         }
         if outcome == Outcome::Recovered {
-            self.teller.on_step(&Step::Recovered { incident: &incident }, self.cell);
+            self.say(&Step::Recovered { incident: &incident });
         }
         self.recovery.incidents.push(incident);
     }

@@ -79,10 +79,14 @@ impl Strategy {
         }
     }
 
-    /// Whether, when it gives up, the code after the error goes on, or a person is called.
+    /// Whether, when it gives up, what the error says under `otherwise` follows: where the strategy
+    /// replaces the depth alone. Others stand for themselves, and a person is called.
     #[must_use]
     pub fn goes_on_when_given_up(self) -> bool {
-        matches!(self, Self::Declared | Self::Explicit)
+        !matches!(
+            self,
+            Self::Stop | Self::Retry { .. } | Self::BackUp { .. } | Self::Restart { .. }
+        )
     }
 }
 

@@ -42,6 +42,13 @@ pub enum Step<'a> {
         /// The error.
         error: ErrorId,
     },
+    /// A fault in the cleanup, which goes on behind what it has stopped.
+    PassedOver {
+        /// What happened.
+        fault: &'a Fault,
+        /// The instruction.
+        pc: u32,
+    },
     /// A person gave the fresh command without which nothing moves after a stop.
     Released,
     /// The run goes back.
@@ -66,7 +73,7 @@ pub enum Step<'a> {
     InPlace {
         /// The error and what was tried before.
         incident: &'a Incident,
-        /// How far the tool was backed up before, in metres.
+        /// How far the tool was backed up before, in metres, which may be less than was asked for.
         backed_up_m: Option<f64>,
     },
     /// The way back was blocked.
@@ -96,6 +103,11 @@ pub enum Step<'a> {
         incident: &'a Incident,
         /// Why.
         why: GiveUp,
+    },
+    /// A person is called to put it right.
+    Operator {
+        /// The error and what was tried.
+        incident: &'a Incident,
     },
 }
 

@@ -30,6 +30,8 @@ pub struct Action {
     /// Whether nothing but motions of the arm has been commanded in it, outside of blocks with a
     /// reverse of their own.
     pub only_moves: bool,
+    /// How far the arm had gone when it began, in metres.
+    pub began_way_m: f64,
     /// How many actions of the run lie before it.
     pub number: u64,
     /// Its entry in the source map, by its first instruction.
@@ -54,6 +56,11 @@ fn is_motion(event: &Event) -> bool {
 }
 
 impl Action {
+    /// Whether one of these lines of branches leads into the other.
+    fn is_in_line(&self, branches: &[usize]) -> bool {
+        self.branches.starts_with(branches) || branches.starts_with(&self.branches)
+    }
+
     /// The motion that it is about: the last that a force was to stop, or the last of all.
     #[must_use]
     pub fn motion(&self) -> Option<u32> {
@@ -82,6 +89,8 @@ pub(crate) struct Begun {
     pub(crate) pc: u32,
     /// When it began, in seconds of the workcell's clock.
     pub(crate) began_s: f64,
+    /// How far the arm had gone by then, in metres.
+    began_way_m: f64,
     /// Where the arm was.
     joints: JointConfiguration,
 }
@@ -112,7 +121,7 @@ pub struct Trail<'m> {
     now_s: f64,
     /// Where the arm was then.
     joints: JointConfiguration,
-    /// How far the arm has gone, in either direction, in metres.
+    /// How far the arm had gone then, in metres.
     way_m: f64,
 }
 
@@ -139,6 +148,19 @@ impl<'m> Trail<'m> {
         &self.actions
     }
 
+    /// The newest action of these branches, or around them: other branches have theirs.
+    #[must_use]
+    pub fn newest_of(&self, branches: &[usize]) -> Option<&Action> {
+        self.actions.iter().rev().find(|action| action.is_in_line(branches))
+    }
+
+    /// How many actions are taken back with the newest one of these branches.
+    #[must_use]
+    pub fn back_to_newest_of(&self, branches: &[usize]) -> usize {
+        let others = self.actions.iter().rev().take_while(|action| !action.is_in_line(branches));
+        others.count() + 1
+    }
+
     /// How many actions the run has begun, those included that it can no longer take back.
     #[must_use]
     pub fn count(&self) -> u64 {
@@ -153,6 +175,36 @@ impl<'m> Trail<'m> {
             action.number > number && action.entry != entry && action.depth <= depth
         };
         self.dropped > number || self.actions.iter().rev().any(is_on)
+    }
+
+    /// Whether the run has begun an action of these branches since the one of a number and entry.
+    #[must_use]
+    pub fn has_passed(&self, number: u64, entry: u32, branches: &[usize]) -> bool {
+        if branches.is_empty() {
+            return self.count() > number + 1;
+        }
+        let is_on = |action: &Action| {
+            action.number > number && action.entry != entry && action.is_in_line(branches)
+        };
+        self.dropped > number + 1 || self.actions.iter().rev().any(is_on)
+    }
+
+    /// What it takes to go back so many actions and to come again, in seconds and in metres: twice
+    /// what they took, but for motions that ended where they began. None if there are not so many.
+    pub(crate) fn there_and_back(
+        &self,
+        actions: usize,
+        cell: &(impl Workcell + ?Sized),
+    ) -> Option<(f64, f64)> {
+        let to = self.actions.get(self.actions.len().checked_sub(actions)?)?;
+        let passed = self.round_trip(to.steps, &cell.joints());
+        let twice = |now: f64, began: f64, passed: Option<f64>| {
+            let again = (now - began).max(0.0);
+            again + passed.map_or(again, |passed| (passed - began).max(0.0))
+        };
+        let time_s = twice(cell.now_s(), to.began_s, passed.map(|motion| motion.began_s));
+        let passed_m = passed.map(|motion| motion.began_way_m);
+        Some((time_s, twice(cell.way_m(), to.began_way_m, passed_m)))
     }
 
     /// What stands in the way of going back further than the trail, if anything does.
@@ -174,12 +226,6 @@ impl<'m> Trail<'m> {
         self.motions.iter().find(|motion| {
             motion.steps >= since && motion.joints.largest_difference_rad(now) < SAME_PLACE_RAD
         })
-    }
-
-    /// How far the arm has gone, in either direction, in metres.
-    #[must_use]
-    pub fn way_m(&self) -> f64 {
-        self.way_m
     }
 
     /// How many actions lie between here and the newest passage of a checkpoint; none if it does
@@ -210,21 +256,18 @@ impl<'m> Trail<'m> {
 
     /// Something happened; the workcell is as it was left.
     pub fn note(&mut self, event: &Event, cell: &dyn Workcell) {
-        self.way_m += event.report.map_or(0.0, |report| report.distance_m);
         if event.direction == Direction::Forward {
             self.forward(event);
         }
         self.now_s = cell.now_s();
         self.joints = cell.joints();
+        self.way_m = cell.way_m();
     }
 
     fn forward(&mut self, event: &Event) {
         let is_never = matches!(event.instr.info().class, Class::Never(_));
         if is_never && event.open_blocks == 0 {
-            self.dropped += self.actions.len() as u64;
-            self.actions.clear();
-            self.posts.clear();
-            self.motions.clear();
+            self.begin_anew();
             self.never = Some(event.pc);
             return;
         }
@@ -244,6 +287,14 @@ impl<'m> Trail<'m> {
         }
     }
 
+    /// Nothing of what was before can be gone back to.
+    pub(crate) fn begin_anew(&mut self) {
+        self.dropped += self.actions.len() as u64;
+        self.actions.clear();
+        self.posts.clear();
+        self.motions.clear();
+    }
+
     fn note_motion(&mut self, event: &Event, steps: u64) {
         if !event.instr.info().family.commands_workcell() {
             return;
@@ -254,8 +305,8 @@ impl<'m> Trail<'m> {
         if self.motions.len() == MOTIONS_MAX {
             self.motions.pop_front();
         }
-        let (began_s, joints) = (self.now_s, self.joints);
-        self.motions.push_back(Begun { steps, pc: event.pc, began_s, joints });
+        let (began_s, began_way_m, joints) = (self.now_s, self.way_m, self.joints);
+        self.motions.push_back(Begun { steps, pc: event.pc, began_s, began_way_m, joints });
     }
 
     fn is_transparent(&self, function: FunctionId) -> bool {
@@ -285,6 +336,7 @@ impl<'m> Trail<'m> {
                 steps: began,
                 pc: event.pc,
                 began_s: self.now_s,
+                began_way_m: self.way_m,
                 only_moves: true,
                 number: self.count(),
                 entry: entry.first,
@@ -320,5 +372,16 @@ impl<'m> Trail<'m> {
         self.motions.retain(|motion| motion.steps < steps);
         let left = self.posts.partition_point(|(at, _)| *at < steps);
         self.posts.truncate(left);
+    }
+
+    /// The run was taken back into an act, at this instruction, that so many instructions lie
+    /// before: it is to be done anew, as part of what it was part of.
+    pub fn cut_into(&mut self, steps: u64, pc: u32) {
+        let next = self.actions.iter().find(|action| action.steps >= steps);
+        let began_an_action = next.is_some_and(|action| action.steps == steps);
+        self.cut(steps);
+        if let (false, Some(newest)) = (began_an_action, self.actions.last_mut()) {
+            newest.last_pc = newest.last_pc.min(pc.saturating_sub(1));
+        }
     }
 }

@@ -47,6 +47,8 @@ pub struct Sim {
     /// The contact force where the arm stands, in newtons.
     pub(crate) force_n: f64,
     pub(crate) last_motion: MotionReport,
+    /// How far the tool centre point has gone, in metres.
+    pub(crate) way_m: f64,
     /// How often one motion may be looked at for contact, if not as often as it takes.
     pub(crate) looks_max: Option<u32>,
 }
@@ -85,6 +87,7 @@ impl Sim {
                 peak_force_n: 0.0,
                 duration_s: 0.0,
             },
+            way_m: 0.0,
             world: Arc::new(world),
             looks_max: None,
         };
@@ -285,6 +288,10 @@ impl Arm for Sim {
 
     fn last_motion(&self) -> MotionReport {
         self.last_motion
+    }
+
+    fn way_m(&self) -> f64 {
+        self.way_m
     }
 }
 

@@ -25,6 +25,7 @@ impl Sim {
         let world = self.world.clone();
         let tool = route::tool(&world.cell, motion.tool)?;
         let route = Route::plan(&world.cell, &self.joints, motion)?;
+        let began_m = tcp_of(&self.joints, &tool.tcp).translation_m;
         let until = interruption.map_or(1.0, |interruption| interruption.fraction);
         let left = self.items.held().and_then(|item| self.seatings[item].as_ref());
         let mut sweep = Sweep::new(&world, &route, &self.items, tool, left);
@@ -34,6 +35,7 @@ impl Sim {
             self.seatings[item] = sweep.left(outcome.fraction);
         }
         self.joints = route.joints_at(outcome.fraction);
+        self.way_m += (tcp_of(&self.joints, &tool.tcp).translation_m - began_m).norm();
         let duration_s = route.profile.time_at_s(outcome.fraction);
         self.now_s += duration_s;
         self.force_n = outcome.force_n;

@@ -1,5 +1,7 @@
 //! The tape: its streams, positions on it, the barrier, and how much it has recorded.
 
+use crate::file::Snapshot;
+use crate::note::{Note, Notes};
 use crate::stream::{BitStream, CHUNK, Stream};
 use obverse_geometry::JointConfiguration;
 
@@ -90,6 +92,10 @@ pub struct Tape {
     pub(crate) control: Stream<u64>,
     pub(crate) faults: Stream<u64>,
     pub(crate) asides: Stream<[u64; 7]>,
+    /// The state in which all that was under way was left for the cleanup, if it was.
+    left: Option<Box<Snapshot>>,
+    /// What happened in recoveries; going back takes nothing from it.
+    notes: Notes,
     /// What has been recorded and dropped, in bits.
     dropped_bits: u64,
     /// The most full chunks that may be held, each as large as one of words.
@@ -164,6 +170,8 @@ impl Tape {
             control: Stream::default(),
             faults: Stream::default(),
             asides: Stream::default(),
+            left: None,
+            notes: Notes::default(),
             dropped_bits: 0,
             limit_chunks: limit_bytes / (CHUNK * 8),
         }
@@ -229,6 +237,35 @@ impl Tape {
     /// Nothing before this can be reversed: drop it.
     pub fn barrier(&mut self) {
         self.cut(Place::default());
+        self.left = None;
+    }
+
+    /// All that was under way is left for the cleanup, in this state.
+    pub fn leave(&mut self, state: Snapshot) {
+        self.left = Some(Box::new(state));
+    }
+
+    /// How many instructions lay between the start and where all was left, if it was.
+    #[inline]
+    #[must_use]
+    pub fn left_steps(&self) -> Option<u64> {
+        self.left.as_ref().map(|state| state.steps)
+    }
+
+    /// The state in which all was left; the tape keeps it no more.
+    pub fn take_left(&mut self) -> Option<Snapshot> {
+        self.left.take().map(|state| *state)
+    }
+
+    /// Note what happened in a recovery.
+    pub fn note(&mut self, note: Note) {
+        self.notes.push(note);
+    }
+
+    /// What happened in recoveries.
+    #[must_use]
+    pub fn notes(&self) -> &Notes {
+        &self.notes
     }
 
     /// All that was recorded, whether it has been dropped or not, in bits; what has been reversed
@@ -280,6 +317,8 @@ impl Tape {
             control: self.control.iter().collect(),
             faults: self.faults.iter().collect(),
             asides: self.asides.iter().collect(),
+            left: self.left.clone(),
+            notes: self.notes.clone(),
             dropped_bits: self.dropped_bits,
         }
     }
@@ -294,6 +333,8 @@ impl Tape {
             control: streams.control.iter().copied().collect(),
             faults: streams.faults.iter().copied().collect(),
             asides: streams.asides.iter().copied().collect(),
+            left: streams.left.clone(),
+            notes: streams.notes.clone(),
             dropped_bits: streams.dropped_bits,
             limit_chunks: DEFAULT_LIMIT_BYTES / (CHUNK * 8),
         }
@@ -315,6 +356,10 @@ pub struct Streams {
     pub faults: Vec<u64>,
     /// Where motions began that were made aside: how many instructions lay before, and the joints.
     pub asides: Vec<[u64; 7]>,
+    /// The state in which all that was under way was left for the cleanup, if it was.
+    pub left: Option<Box<Snapshot>>,
+    /// What happened in recoveries.
+    pub notes: Notes,
     /// What was recorded before and dropped, in bits.
     pub dropped_bits: u64,
 }

@@ -80,6 +80,10 @@ impl Arm for Faulty {
     fn last_motion(&self) -> MotionReport {
         self.sim.last_motion()
     }
+
+    fn way_m(&self) -> f64 {
+        self.sim.way_m()
+    }
 }
 
 impl Safety for Faulty {

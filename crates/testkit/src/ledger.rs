@@ -27,6 +27,7 @@ pub struct Ledger {
     pub stop_at: Option<(u64, f64)>,
     /// Whether a stop holds the arm.
     pub is_stopped: bool,
+    way_m: f64,
     last: MotionReport,
 }
 
@@ -42,6 +43,7 @@ impl Ledger {
             acts: 0,
             stop_at: None,
             is_stopped: false,
+            way_m: 0.0,
             last: MotionReport {
                 end: MotionEnd::Reached,
                 distance_m: 0.0,
@@ -118,6 +120,9 @@ impl Arm for Ledger {
             return Err(Fault::BadCommand { why: "a joint value is no number".to_owned() });
         }
         let stopped = self.begin()?;
+        let began = self.joints;
+        let whole_m = began.largest_difference_rad(&goal);
+        self.way_m += stopped.unwrap_or(1.0) * whole_m;
         if let Some(fraction) = stopped {
             self.joints = self.joints.towards(&goal, fraction);
             return Err(self.stop(fraction));
@@ -142,6 +147,10 @@ impl Arm for Ledger {
 
     fn last_motion(&self) -> MotionReport {
         self.last
+    }
+
+    fn way_m(&self) -> f64 {
+        self.way_m
     }
 }
 

@@ -76,6 +76,10 @@ impl Arm for Logged {
     fn last_motion(&self) -> MotionReport {
         self.last
     }
+
+    fn way_m(&self) -> f64 {
+        self.ledger.way_m()
+    }
 }
 
 impl Safety for Logged {

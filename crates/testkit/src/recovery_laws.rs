@@ -73,6 +73,93 @@ pub fn goes_back_along_the_trail(u: &mut Unstructured<'_>) -> Result<bool> {
     Ok(is_compared)
 }
 
+/// A way back that is blocked in an act, and gone forward from there: the trail is what it was, no
+/// action longer and none shorter.
+///
+/// # Errors
+/// Those of the randomness.
+pub fn keeps_the_trail_over_a_blocked_return(u: &mut Unstructured<'_>) -> Result<bool> {
+    let source = programs::generate(u, Options { allow_overrides: false, ..Options::default() })?;
+    let program = program(&source, |_| {});
+    let mut cell = Logged::new(u.arbitrary()?).steady();
+    let Ok(mut machine) = Machine::new(&program, &cell) else { return Ok(false) };
+    let mut watch = Watch(Trail::new(program.module(), obverse_workcell::Arm::joints(&cell)));
+    go_on(&mut machine, &mut cell, &mut watch, u64::MAX);
+    if watch.0.actions().is_empty() {
+        return Ok(false);
+    }
+    let before = actions(&watch.0);
+    let steps = machine.state().steps();
+    let first = watch.0.actions()[0].steps;
+    let acts = cell.ledger.acts;
+    cell.ledger.stop_at = Some((acts + u.int_in_range(0..=8)?, 0.5));
+    let stop = machine.reverse_to(Mark::at(first), &mut cell, &mut watch);
+    let Stop::Fault { pc, .. } = stop else { return Ok(false) };
+    let prefix = u64::from(program.module().code[pc as usize].prefix());
+    watch.0.cut_into(machine.state().steps() - 1 - prefix, pc);
+    cell.release();
+    go_on(&mut machine, &mut cell, &mut watch, steps);
+    if machine.state().steps() == steps {
+        assert_eq!(actions(&watch.0), before, "blocked at {pc}\n{source}");
+        return Ok(true);
+    }
+    Ok(false)
+}
+
+/// Left for the cleanup at any instant, an act that was stopped half way included, a run goes on
+/// there, and going back leads into what was left, bit for bit, and from there to the start.
+///
+/// # Errors
+/// Those of the randomness.
+pub fn comes_back_to_what_was_left(u: &mut Unstructured<'_>) -> Result<bool> {
+    let source = programs::generate(u, Options { allow_overrides: false, ..Options::default() })?;
+    let program = program(&source, |_| {});
+    let mut cell = Logged::new(u.arbitrary()?).steady();
+    cell.ledger.stop_at = Some((u.int_in_range(0..=40)?, 0.5));
+    let Ok(mut machine) = Machine::new(&program, &cell) else { return Ok(false) };
+    let start = machine.digest(&cell);
+    let mut watch = Watch(Trail::new(program.module(), obverse_workcell::Arm::joints(&cell)));
+    go_on(&mut machine, &mut cell, &mut watch, u.int_in_range(0..=600)?);
+    let (steps, was_cleaning_up) = (machine.state().steps(), machine.is_cleaning_up());
+    let left = machine.digest(&cell);
+    if !machine.leave(&cell) {
+        let may_leave = program.module().cleanup.is_some() && !was_cleaning_up;
+        assert!(!may_leave, "after {steps} steps\n{source}");
+        assert_eq!(machine.digest(&cell), left, "it changed nothing");
+        return Ok(false);
+    }
+    cell.release();
+    cell.ledger.stop_at = None;
+    go_on(&mut machine, &mut cell, &mut watch, u64::MAX);
+    let stop = machine.reverse_to(Mark::at(steps), &mut cell, &mut ());
+    if matches!(stop, Stop::Refused(_)) {
+        return Ok(false);
+    }
+    assert_eq!(stop, Stop::AtMark, "to what was left after {steps} steps\n{source}");
+    assert_eq!(machine.digest(&cell), left, "what was left after {steps} steps\n{source}");
+    let back = drive(&mut machine, Direction::Reverse, Limits::NONE, &mut cell, &mut ());
+    if back == Ending::AtStart {
+        assert_eq!(machine.digest(&cell), start, "left after {steps} steps\n{source}");
+    }
+    Ok(true)
+}
+
+/// Forward until so many steps have been made, or the run ends.
+fn go_on(machine: &mut Machine<'_>, cell: &mut Logged, watch: &mut Watch<'_>, steps: u64) {
+    let allowed = machine.executed() + MAX_INSTRUCTIONS;
+    while machine.executed() < allowed && machine.state().steps() < steps {
+        match machine.step(Direction::Forward, cell, watch) {
+            Ok(()) | Err(Stop::Raised { .. } | Stop::Due { .. }) => {}
+            Err(_) => return,
+        }
+    }
+}
+
+/// What makes the actions of a trail the same: where they began, and their numbers.
+fn actions(trail: &Trail<'_>) -> Vec<(u64, u64, u32)> {
+    trail.actions().iter().map(|action| (action.steps, action.number, action.entry)).collect()
+}
+
 /// Under any strategy and with a fault anywhere, also on the way back, a run ends; no error is
 /// tried more often than may be; nothing moves after a stop unless it was released; and from where
 /// it ended the program's state goes back to the start, or to what cannot be taken back.

@@ -12,22 +12,13 @@ use obverse_workcell::Workcell;
 
 impl Machine<'_> {
     /// Let the fault that stopped the act at hand be an error of the program, which is now pending,
-    /// once however often it is raised.
-    /// Whether it could be: nothing is done unless an act of the program itself was stopped going
-    /// forward, the program declares the error, and the workcell lets a toggle be finished.
+    /// once however often it is raised. Whether it could be: nothing is done unless the program
+    /// declares the error and the act can be [passed over](Self::pass_over_fault).
     pub fn raise(&mut self, error: ErrorId, cell: &mut dyn Workcell) -> bool {
-        let Some(Pending { direction: Direction::Forward, level_before }) = self.state.pending
-        else {
-            return false;
-        };
         let is_declared = error.index() < self.program.module().errors.len();
-        if !is_declared || self.state.is_compensating() || !self.toggle(level_before, cell) {
+        if !is_declared || !self.pass_over_fault(cell) {
             return false;
         }
-        self.executed = self.executed.saturating_add(1);
-        self.state.pending = None;
-        self.state.depth = 0;
-        self.state.place.pc += 1;
         let was_pending = self.state.raised.contains(&error);
         if !was_pending {
             self.state.raised.push(error);
@@ -36,6 +27,24 @@ impl Machine<'_> {
             let steps = self.state.steps();
             record::Fault { error: error.0, was_pending, steps }.push(tape);
         }
+        true
+    }
+
+    /// Go on behind the act at hand, which a fault has stopped: it counts as done as far as it
+    /// came. Whether it could be: nothing is done unless an act of the program itself was stopped
+    /// going forward, and the workcell lets a toggle be finished.
+    pub fn pass_over_fault(&mut self, cell: &mut dyn Workcell) -> bool {
+        let Some(Pending { direction: Direction::Forward, level_before }) = self.state.pending
+        else {
+            return false;
+        };
+        if self.state.is_compensating() || !self.toggle(level_before, cell) {
+            return false;
+        }
+        self.executed = self.executed.saturating_add(1);
+        self.state.pending = None;
+        self.state.depth = 0;
+        self.state.place.pc += 1;
         true
     }
 

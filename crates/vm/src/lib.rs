@@ -21,6 +21,7 @@ pub mod convert;
 mod fault;
 mod hot;
 mod kept;
+mod leave;
 pub mod link;
 pub mod machine;
 pub mod observe;

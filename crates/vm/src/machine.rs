@@ -11,9 +11,9 @@ use crate::step::{Host, Outcome};
 use crate::stop::Stop;
 
 use obverse_bytecode::Verified;
-use obverse_isa::{Class, Instr};
-use obverse_tape::{NoTape, Recorder, Tape};
-use obverse_workcell::Workcell;
+use obverse_isa::{Class, Instr, Setting};
+use obverse_tape::{NoTape, Note, Recorder, Tape};
+use obverse_workcell::{ToolId, Workcell};
 use std::collections::BTreeMap;
 use xxhash_rust::xxh3::Xxh3;
 
@@ -411,12 +411,13 @@ impl<'p> Machine<'p> {
         if self.state.depth > 0 {
             return Exit::Slow;
         }
-        // What was before this turn was another task's.
-        let turn_began = self.turn_began();
-        if turn_began.is_some_and(|began| self.state.steps() <= began) {
+        // What was before this turn was another task's, and what was left for the cleanup has no
+        // code that leads there.
+        let bound = self.turn_began().max(self.came_from_leaving());
+        if bound.is_some_and(|bound| self.state.steps() <= bound) {
             return Exit::Slow;
         }
-        let floor = floor.max(turn_began.unwrap_or(0));
+        let floor = floor.max(bound.unwrap_or(0));
         let code = &self.program.module().code;
         let mut place = self.state.place;
         let mut values = values!(self);
@@ -448,6 +449,19 @@ impl<'p> Machine<'p> {
     #[must_use]
     pub fn program(&self) -> &'p Verified {
         self.program
+    }
+
+    /// The tool in force.
+    #[must_use]
+    pub fn tool(&self) -> ToolId {
+        ToolId(self.state.settings[Setting::Tool as usize] as u16)
+    }
+
+    /// Note on the tape what happened in a recovery.
+    pub fn note(&mut self, note: Note) {
+        if let Some(tape) = &mut self.tape {
+            tape.note(note);
+        }
     }
 
     /// The machine's part of the state.

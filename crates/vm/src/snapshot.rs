@@ -54,7 +54,7 @@ impl<'p> Machine<'p> {
 
     /// Take the program's own state back to where the outermost function that runs in place of a
     /// reversal was called; the workcell is commanded nothing.
-    fn leave_compensations(&mut self) {
+    pub(crate) fn leave_compensations(&mut self) {
         let mut nothing = Shadow::new(JointConfiguration::ZERO, Vec::new());
         while !self.state.compensations.is_empty() {
             if self.state.pending.is_some_and(|pending| pending.direction == Direction::Reverse) {
@@ -67,7 +67,7 @@ impl<'p> Machine<'p> {
         }
     }
 
-    fn state_as_data(&self, cell: &dyn Workcell) -> Snapshot {
+    pub(crate) fn state_as_data(&self, cell: &dyn Workcell) -> Snapshot {
         let state = &self.state;
         let module = self.program.module();
         let frame = |frame: &Frame| frame_as_data(module, frame);
@@ -115,11 +115,30 @@ impl<'p> Machine<'p> {
         cell: &dyn Workcell,
     ) -> Result<Self, SnapshotError> {
         let module = program.module();
-        check(module, snapshot)?;
         let mut machine =
             Self::new(program, cell).map_err(|_| SnapshotError { what: "workcell" })?;
         machine.believed_steps = BELIEVED_STEPS;
-        let state = &mut machine.state;
+        machine.links = Links {
+            items: vec![obverse_workcell::ItemId(0); module.items.len()],
+            tools: vec![0; module.tools.len()],
+            settings: snapshot.settings,
+        };
+        machine.tape = Some(Tape::from_streams(streams));
+        machine.stand_as(snapshot)?;
+        Ok(machine)
+    }
+
+    /// Be in the state of a snapshot.
+    ///
+    /// # Errors
+    /// If it is none of the program.
+    pub(crate) fn stand_as(&mut self, snapshot: &Snapshot) -> Result<(), SnapshotError> {
+        let module = self.program.module();
+        check(module, snapshot)?;
+        let forks: Option<Vec<Fork>> =
+            snapshot.forks.iter().map(|fork| restore_fork(self, snapshot, fork)).collect();
+        let forks = forks.ok_or(SnapshotError { what: "fork" })?;
+        let state = &mut self.state;
         state.place = Place {
             pc: snapshot.pc as usize,
             offset: snapshot.steps.wrapping_sub(u64::from(snapshot.pc)),
@@ -139,16 +158,8 @@ impl<'p> Machine<'p> {
             direction: if is_reverse { Direction::Reverse } else { Direction::Forward },
             level_before,
         });
-        machine.links = Links {
-            items: vec![obverse_workcell::ItemId(0); module.items.len()],
-            tools: vec![0; module.tools.len()],
-            settings: snapshot.settings,
-        };
-        machine.tape = Some(Tape::from_streams(streams));
-        let forks: Option<Vec<Fork>> =
-            snapshot.forks.iter().map(|fork| restore_fork(&machine, snapshot, fork)).collect();
-        machine.state.forks = forks.ok_or(SnapshotError { what: "fork" })?;
-        Ok(machine)
+        state.forks = forks;
+        Ok(())
     }
 }
 

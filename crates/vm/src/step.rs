@@ -159,6 +159,9 @@ impl Machine<'_> {
             self.state.depth = 0;
             return Ok(());
         }
+        if self.come_back()? {
+            return Ok(());
+        }
         self.take_back_fault();
         if self.turn_back()? {
             return Ok(());

@@ -20,6 +20,10 @@ pub trait Arm {
 
     /// What came of the last motion that [`execute`](Self::execute) finished.
     fn last_motion(&self) -> MotionReport;
+
+    /// How far the tool centre point has gone in all motions, in metres: each from where it began
+    /// to where it ended, those included that a fault ended.
+    fn way_m(&self) -> f64;
 }
 
 /// What may be asked after a stop.

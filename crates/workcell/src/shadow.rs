@@ -41,6 +41,10 @@ impl Arm for Shadow {
     fn last_motion(&self) -> MotionReport {
         NO_MOTION
     }
+
+    fn way_m(&self) -> f64 {
+        0.0
+    }
 }
 
 impl Safety for Shadow {

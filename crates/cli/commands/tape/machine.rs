@@ -2,6 +2,7 @@
 
 use super::Shown;
 use super::cost::{Cost, per};
+use super::notes;
 use crate::report::{self, Lines};
 use crate::story::said;
 use crate::write;
@@ -24,6 +25,10 @@ pub(super) fn show(shown: &Shown<'_>, records: Option<usize>) {
         });
         write::line(&object.to_string());
     }
+    let notes = &shown.file.streams.notes;
+    for note in notes.iter() {
+        write::line(&notes::object(module, note).to_string());
+    }
     let summary = json!({
         "type": "summary",
         "outcome": "shown",
@@ -34,6 +39,8 @@ pub(super) fn show(shown: &Shown<'_>, records: Option<usize>) {
         "records_not_told": entries.len() - told,
         "bits": shown.costs.total.bits + shown.walk.left_bits,
         "bits_not_walked": shown.walk.left_bits,
+        "notes": notes.iter().count(),
+        "notes_dropped": notes.dropped(),
         "dropped_bits": shown.file.streams.dropped_bits,
         "back_to": back_to(shown),
         "costs": by_opcode(shown),

@@ -2,10 +2,11 @@
 //! instruction and by robot command.
 //!
 //! [`walk`] finds the records, [`cost`] adds them up, [`text`] and [`machine`] show them to people
-//! and machines, [`value`] says what a record holds.
+//! and machines, [`value`] says what a record holds, [`notes`] what happened in recoveries.
 
 mod cost;
 mod machine;
+mod notes;
 mod text;
 mod value;
 mod walk;

@@ -2,6 +2,7 @@
 
 use super::Shown;
 use super::cost::per;
+use super::notes;
 use crate::report::Lines;
 use crate::story::said;
 use crate::write;
@@ -18,6 +19,7 @@ pub(super) fn show(shown: &Shown<'_>, records: usize) {
     write::line(&format!("{source}, fingerprint {:016x}, seed {}", file.fingerprint, file.seed));
     write::line(&format!("ended: {}", file.ending));
     show_records(shown, records);
+    show_notes(shown);
     by_opcode(shown);
     by_instruction(shown);
     by_command(shown);
@@ -39,6 +41,21 @@ fn show_records(shown: &Shown<'_>, records: usize) {
     let hidden = entries.len().saturating_sub(records);
     if hidden > 0 {
         write::line(&format!("        and {hidden} more; --records {} shows them", entries.len()));
+    }
+}
+
+/// What happened in recoveries, if there were any.
+fn show_notes(shown: &Shown<'_>) {
+    let all = &shown.file.streams.notes;
+    if all.iter().next().is_none() {
+        return;
+    }
+    write::line("\nrecoveries, oldest first");
+    for note in all.iter() {
+        write::line(&notes::line(shown.module, note));
+    }
+    if all.dropped() > 0 {
+        write::line(&format!("  and {} before them, which are not kept", all.dropped()));
     }
 }
 

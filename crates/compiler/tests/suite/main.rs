@@ -26,3 +26,4 @@ mod shortfalls;
 mod statements;
 mod symbols;
 mod turns;
+mod vain;

@@ -107,6 +107,17 @@ macro_rules! warnings {
                sequence main { wait 1 s }"
         right "error stopped { on emergency stop }\n\
                sequence main { wait 1 s }"
+    ThrownAgain "W0405" "a throw that is done again after its recovery"
+        why "An error says `then return to action` after a sequence, and the action is a `throw` \
+             by itself: done again it throws again, and the condition before it is not looked at, \
+             until the program has tried often enough and stops. `requires` is an action that \
+             looks again, and so is an action, a sequence or an advanced move that throws."
+        wrong "error no_part { recover using feed then return to action }\n\
+               sequence feed { set 1 high wait 1 s }\n\
+               sequence main { wait 1 s if not input 2 { throw no_part } }"
+        right "error no_part { recover using feed then return to action }\n\
+               sequence feed { set 1 high wait 1 s }\n\
+               sequence main { wait 1 s requires input 2 else throw no_part }"
 
     // W05xx: files.
     TwoNames "W0501" "two names for one output or input"

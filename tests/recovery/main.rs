@@ -4,6 +4,9 @@
 //! The cell is a bare arm with an input that comes high at a time, or never: until then the error
 //! of the programs here is raised, so that what is tried against it can be read off.
 
+mod cleanup;
+mod sites;
+
 use obverse_bytecode::{FaultName, Module, verify};
 use obverse_compiler::compile;
 use obverse_recovery::{
@@ -11,7 +14,8 @@ use obverse_recovery::{
     Strategy, Teller, Unattended, drive, recover,
 };
 use obverse_sim::cell::InputRule;
-use obverse_sim::{Cell, FaultPlan, Sim};
+use obverse_sim::{Cell, FaultPlan, Sim, StopKind};
+use obverse_tape::Note;
 use obverse_vm::{Direction, Event, Limits, Machine, Observer};
 use obverse_workcell::{Arm, Clock, DigitalIo, Fault, Safety, Workcell};
 
@@ -52,6 +56,8 @@ fn cell(high_at_s: f64) -> Cell {
 }
 
 const NEVER_S: f64 = 1e9;
+/// More motions than any run here makes.
+const MOTIONS_MAX: u64 = 300;
 
 /// A run and what became of it.
 struct Run {
@@ -59,6 +65,8 @@ struct Run {
     incidents: Vec<Incident>,
     sim: Sim,
     steps: Steps,
+    /// What the tape says of recoveries, after going back.
+    notes: Vec<Note>,
     /// Whether going back from the end leads to the start, bit for bit.
     is_identical: bool,
 }
@@ -77,6 +85,10 @@ impl Run {
 #[derive(Default)]
 struct Steps {
     told: Vec<String>,
+    /// How far the tool was backed up, each time.
+    backed_up_m: Vec<Option<f64>>,
+    /// Whether a motion was to be made aside, at each attempt.
+    changes: Vec<bool>,
     forward: u64,
     reverse: u64,
 }
@@ -97,6 +109,13 @@ impl Teller for Steps {
         let text = format!("{step:?}");
         let word = text.split(|c: char| !c.is_alphanumeric()).next().unwrap_or_default();
         self.told.push(word.to_owned());
+        match step {
+            Step::InPlace { backed_up_m, .. } => self.backed_up_m.push(*backed_up_m),
+            Step::Again { change, .. } => {
+                self.changes.push(change.is_some_and(|change| change.aside.is_some()));
+            }
+            _ => {}
+        }
     }
 }
 
@@ -155,10 +174,18 @@ impl Case {
         let ending = recover(&mut machine, limits, &mut self.sim, &mut recovery, &mut steps);
         let incidents = recovery.incidents;
         let after = self.sim.clone();
-        self.sim.release();
-        let back = drive(&mut machine, Direction::Reverse, limits, &mut self.sim, &mut ());
+        let mut back = ending.clone();
+        for _ in 0..MOTIONS_MAX {
+            self.sim.release();
+            back = drive(&mut machine, Direction::Reverse, limits, &mut self.sim, &mut ());
+            if !matches!(back, Ending::Fault { .. }) {
+                break;
+            }
+        }
         let is_identical = back == Ending::AtStart && machine.digest(&self.sim) == start;
-        Run { ending, incidents, sim: after, steps, is_identical }
+        let notes = machine.tape().map(|tape| tape.notes().iter().cloned().collect());
+        let notes = notes.unwrap_or_default();
+        Run { ending, incidents, sim: after, steps, notes, is_identical }
     }
 }
 
@@ -243,9 +270,17 @@ fn each_bound_ends_it_and_is_named() {
     assert_eq!(run.depths().len(), 3);
     let run = bounded(obverse_bytecode::Bounds { time_s: Some(5.0), ..none });
     assert_eq!(run.outcome(), Outcome::GivenUp(GiveUp::Time(5.0)));
-    let run = bounded(obverse_bytecode::Bounds { distance_m: Some(0.05), ..none });
-    assert_eq!(run.outcome(), Outcome::GivenUp(GiveUp::Distance(0.05)));
-    assert!(run.depths().len() > 1);
+    // Each attempt goes 20 mm back and 20 mm forward again: a third would end at 120 mm.
+    let run = bounded(obverse_bytecode::Bounds { distance_m: Some(0.1), ..none });
+    assert_eq!(run.outcome(), Outcome::GivenUp(GiveUp::Distance(0.1)));
+    assert_eq!(run.depths().len(), 2);
+    assert!(run.sim.way_m() <= 0.02 + 0.1, "{} m", run.sim.way_m());
+    let run = bounded(obverse_bytecode::Bounds { distance_m: Some(0.03), ..none });
+    assert_eq!(run.outcome(), Outcome::GivenUp(GiveUp::Distance(0.03)));
+    assert_eq!(run.steps.reverse, 0, "what cannot fit is not begun");
+    let run = bounded(obverse_bytecode::Bounds { time_s: Some(0.5), ..none });
+    assert_eq!(run.outcome(), Outcome::GivenUp(GiveUp::Time(0.5)));
+    assert_eq!(run.steps.reverse, 0, "what cannot fit is not begun");
 }
 
 #[test]
@@ -308,10 +343,12 @@ fn each_strategy_does_what_it_is_called_for() {
 
     let fixed = with(Strategy::Fixed { actions: 2 });
     assert_eq!(fixed.depths(), [2; 8]);
-    assert!(!fixed.sim.output(5), "nothing but what the strategy does");
+    assert!(fixed.sim.output(5), "it replaces the depth, and not what follows");
 
     let escalating = with(Strategy::Escalating);
     assert_eq!(escalating.depths(), [1, 2, 3, 4, 5, 5, 5, 5]);
+    assert!(escalating.sim.output(5));
+    assert!(!retry.sim.output(5) && !stop.sim.output(5), "nothing but what the strategy does");
 
     let restart = with(Strategy::Restart { times: 2 });
     assert!(matches!(restart.ending, Ending::GivenUp { why: GiveUp::Attempts(2), .. }));
@@ -339,7 +376,8 @@ fn who_knows_what_will_come_goes_back_just_as_far() {
     let run = Case::new(&source, first_s + 0.5).with(Strategy::Oracle).run();
     assert_eq!((run.ending, run.incidents[0].depths()), (Ending::Finished, vec![1]));
     let never = Case::new(&source, NEVER_S).with(Strategy::Oracle).run();
-    assert!(matches!(never.ending, Ending::GivenUp { why: GiveUp::WouldNotHelp, .. }));
+    assert_eq!(never.outcome(), Outcome::GivenUp(GiveUp::WouldNotHelp));
+    assert!(matches!(never.ending, Ending::Unhandled(_)), "{:?}", never.ending);
     assert_eq!(never.steps.reverse, 0);
 }
 
