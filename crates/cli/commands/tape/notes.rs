@@ -37,6 +37,7 @@ fn words(module: &Module, note: &Note) -> String {
             format!("forward again, attempt {}{changes}", note.attempts)
         }
         Noted::Recovered => format!("past it, attempts: {}", note.attempts),
+        Noted::GivenUp { why } if why == "explicit" => "left to its sequence".to_owned(),
         Noted::GivenUp { why } => format!("given up ({why}), attempts: {}", note.attempts),
     }
 }
