@@ -135,7 +135,8 @@ pub(crate) fn of_own<'r>(word: &'r str, rest: &'r str) -> Option<(&'r str, Habit
         return Some((first_word(rest), habit));
     }
     if let "sleep" | "wait" = word {
-        let time = rest.trim_end_matches([' ', '\t', ';']).strip_prefix('(')?.strip_suffix(')')?;
+        let code = rest.split("//").next().unwrap_or_default();
+        let time = code.trim_end_matches([' ', '\t', ';']).strip_prefix('(')?.strip_suffix(')')?;
         time.parse().ok().filter(|time: &f64| time.is_finite())?;
         let instead = format!("wait {time} s");
         let help = format!("write `{instead}`");
