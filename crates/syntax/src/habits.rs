@@ -127,19 +127,13 @@ pub(crate) fn of_assigned(rest: &str) -> Option<(&str, Habit)> {
 }
 
 /// What is made of a word of the language that begins a statement as in another one, and which word
-/// tells: `while True:`, `if get_digital_in(3):`, `sleep(0.5)`.
-pub(crate) fn of_own<'r>(word: &'r str, rest: &'r str) -> Option<(&'r str, Habit)> {
+/// tells: `while True:`, `if get_digital_in(3):`, `wait sec 0.5`.
+pub(crate) fn of_own<'r>(word: &str, rest: &'r str) -> Option<(&'r str, Habit)> {
+    let of_controller = words(rest).find(|word| word.starts_with('$'));
     if let Some(habit) = wait(word, rest)
-        && (habit.instead.is_some() || rest.contains('$'))
+        && (habit.instead.is_some() || of_controller.is_some())
     {
-        return Some((first_word(rest), habit));
-    }
-    if let "sleep" | "wait" = word {
-        let time = rest.trim_end_matches([' ', '\t', ';']).strip_prefix('(')?.strip_suffix(')')?;
-        time.parse().ok().filter(|time: &f64| time.is_finite())?;
-        let instead = format!("wait {time} s");
-        let help = format!("write `{instead}`");
-        return Some((word, Habit { help, instead: Some(instead), then: Then::NextLine }));
+        return Some((of_controller.unwrap_or(first_word(rest)), habit));
     }
     if !matches!(word, "if" | "while") || rest.contains('{') {
         return None;
@@ -297,8 +291,8 @@ fn level(word: &str) -> Option<&'static str> {
     }
 }
 
-/// `DO[1]=ON`, `$OUT[1] = TRUE`, `R[2]=R[2]+1`, `J P[1] 100% FINE`: signals, registers and positions
-/// by number.
+/// `DO[1]=ON`, `$OUT[1] = TRUE`, `R[2]=R[2]+1`, `J P[1] 100% FINE`: signals, registers and
+/// positions by number.
 fn numbered(plain: &str, rest: &str) -> Option<Habit> {
     let number = rest.strip_prefix('[').and_then(|rest| rest.split_once(']'));
     let help = match (plain, number) {
@@ -449,9 +443,9 @@ mod tests {
         assert_eq!(told("if", " not get_digital_in(3):"), Some("get_digital_in"));
         assert_eq!(told("if", " get_digital_in(3) {"), None);
         assert_eq!(told("if", " force > 3 N"), None);
-        assert_eq!(told("sleep", "(0.5)"), Some("sleep"));
-        assert_eq!(told("sleep", "(0.5 s)"), None);
-        assert_eq!(told("wait", " 0.5 s"), None);
+        assert_eq!(told("wait", " sec 0.5"), Some("sec"));
+        assert_eq!(told("wait", " for $in[3]"), Some("$in"));
+        assert_eq!(told("wait", " sec"), None, "a variable");
     }
 
     #[test]
