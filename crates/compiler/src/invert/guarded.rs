@@ -1,6 +1,7 @@
 //! Advanced moves: where one ends depends on what it meets, unless it goes back to where it began.
 
 use super::block::Inverter;
+use super::place::Spot;
 use super::refusal::refusal;
 use obverse_syntax::ast::{AdvancedMove, Behaviour, MoveClause, Name};
 use obverse_syntax::span::{Span, Spanned};
@@ -27,7 +28,7 @@ impl<'p> Inverter<'p> {
     /// Says what leads back, in words that have an inverse.
     fn refuse_advanced_move(&mut self, counterpart: Option<&AdvancedMove<'p>>, span: Span) {
         let back = counterpart.map_or("OTHER", |other| other.name.value);
-        let here = self.arm.spot().map_or("HERE".to_owned(), |spot| spot.text());
+        let here = self.arm.spot().map_or("HERE".to_owned(), Spot::text);
         let written = format!(
             "do {{ advance ..; move to THERE }} in reverse {{ advance {back}; move to {here} }}"
         );

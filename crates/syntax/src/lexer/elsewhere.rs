@@ -160,10 +160,12 @@ impl<'s> Lexer<'s, '_> {
             return false;
         }
         let line = self.line().trim_start_matches([' ', '\t']);
-        let (word, behind) = line.split_at(ascii_word_length(line));
+        let word = &line[..ascii_word_length(line)];
         let is_name = Token::lexer(word).next() == Some(Ok(Token::Name));
-        let is_prose =
-            is_name && !is_before_assignment(behind) && habits::of(word, behind).is_none();
+        // What is assigned may stand on a line of its own.
+        let rest = self.rest().trim_start_matches([' ', '\t']);
+        let behind = rest.get(word.len()..).unwrap_or("");
+        let is_prose = is_name && !is_before_assignment(behind);
         is_prose || line.starts_with(['-', '*', '=', '#', '!', '&'])
     }
 
