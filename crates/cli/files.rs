@@ -10,6 +10,9 @@ use std::path::{Component, Path, PathBuf};
 /// The largest file that is read, in bytes.
 pub(crate) const MAX_FILE_BYTES: u64 = 256 << 20;
 
+/// How many files of a folder are looked through for one that was meant.
+const MAX_LISTED: usize = 1_000;
+
 /// Read a file, if it is one and not too large.
 ///
 /// # Errors
@@ -97,6 +100,19 @@ impl Loader for ProgramFolder {
             let at = error.utf8_error().valid_up_to();
             format!("this is no text: byte {at} (counted from 0) is not UTF-8")
         })
+    }
+
+    fn files(&mut self, folder: &str) -> Vec<String> {
+        let Some(real) = &self.real else { return Vec::new() };
+        // Of a folder elsewhere, to which a link may lead, nothing is told.
+        let folder = fs::canonicalize(real.join(folder)).ok();
+        let folder = folder.filter(|folder| folder.starts_with(real));
+        let entries = folder.and_then(|folder| fs::read_dir(folder).ok());
+        let entries = entries.into_iter().flatten().flatten().take(MAX_LISTED);
+        let names = entries.filter_map(|entry| entry.file_name().into_string().ok());
+        let mut names: Vec<String> = names.filter(|name| name.ends_with(".obv")).collect();
+        names.sort();
+        names
     }
 }
 

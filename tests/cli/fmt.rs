@@ -89,6 +89,38 @@ fn a_file_with_mistakes_is_left_alone_and_the_others_are_formatted() {
     bench.refuses(&["fmt", "."], &["this is a folder"]);
 }
 
+#[test]
+fn a_mistake_of_any_kind_leaves_a_file_alone_and_a_part_of_a_program_is_formatted() {
+    let bench = Bench::new("fmt_meaning");
+    let wrong = [
+        ("name.obv", "sequence main{move to nowhere}\n", "E0101"),
+        ("unit.obv", "sequence main{wait 3}\n", "E0203"),
+        ("fork.obv", "sequence main{fork{set 1 high}and{set 1 low}}\n", "E0603"),
+        ("part.obv", "joints _a=[0,0] deg\n", "E0205"),
+    ];
+    for (name, text, code) in wrong {
+        bench.write(name, text);
+        for arguments in [&["fmt", name][..], &["fmt", "--check", name], &["fmt", "--stdout", name]]
+        {
+            let ran = bench.ends(2, arguments);
+            assert!(ran.stderr.contains(code) && ran.stdout.is_empty(), "{name}: {}", ran.stderr);
+        }
+        assert_eq!(bench.read(name), text.as_bytes());
+    }
+    let right = [
+        ("poses.obv", "joints _home=[0,0,0,0,0,0] deg\n"),
+        ("io.obv", "error jam{recover using free}\n"),
+        ("unused.obv", "import \"poses.obv\"\nsequence main{wait 1 s}sequence never{wait 1 s}\n"),
+        ("in_vain.obv", "import \"none.obv\"\nsequence main{move to home}\n"),
+        ("beside.obv", "import \"unit.obv\"\naction _pick{wait 1 s}\n"),
+    ];
+    for (name, text) in right {
+        bench.write(name, text);
+        let ran = bench.ends(0, &["fmt", name]);
+        assert_eq!(ran.stdout, format!("{name}: formatted\n"), "{}", ran.stderr);
+    }
+}
+
 #[cfg(unix)]
 #[test]
 fn who_may_read_a_file_stays_as_it_was_and_a_link_stays_a_link() {

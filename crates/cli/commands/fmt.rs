@@ -1,8 +1,11 @@
-//! `obverse fmt`: bring source files into their canonical layout.
+//! `obverse fmt`: bring source files into their canonical layout. One with a mistake is left alone,
+//! be it of grammar or of meaning: what was meant by it is not known.
 
 use super::Result;
+use crate::files::ProgramFolder;
 use crate::problem::{Diagnosed, Problem};
 use crate::{Outcome, load, report, show, write};
+use obverse_compiler::mistakes_in;
 use obverse_syntax::format::format;
 use obverse_syntax::sources::Sources;
 use serde_json::json;
@@ -97,6 +100,11 @@ fn formatted(path: &Path) -> std::result::Result<Formatted, Problem> {
     let source =
         obverse_syntax::text_of(&raw).map_err(|diagnostic| wrong("", vec![*diagnostic]))?;
     let text = format(source).map_err(|diagnostics| wrong(source, diagnostics))?;
+    let (sources, diagnostics) = mistakes_in(&name, source, &mut ProgramFolder::of(path));
+    if !diagnostics.is_empty() {
+        let folder = folder.clone();
+        return Err(Problem::in_source(Diagnosed { folder, sources, diagnostics }));
+    }
     Ok(Formatted { raw, text })
 }
 

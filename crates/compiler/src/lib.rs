@@ -42,11 +42,12 @@ use check::Checked;
 use effects::Effects;
 use load::Loaded;
 use obverse_bytecode::Module;
-use obverse_syntax::Parsed;
 use obverse_syntax::ast::Program;
-use obverse_syntax::diagnostic::Diagnostic;
+use obverse_syntax::codes::Code;
+use obverse_syntax::diagnostic::{Diagnostic, Severity};
 use obverse_syntax::sources::Sources;
 use obverse_syntax::span::Span;
+use obverse_syntax::{LeftOut, Parsed};
 use report::Reports;
 use symbols::Symbols;
 use types::ValueType;
@@ -109,6 +110,34 @@ pub fn files(name: &str, source: &str, loader: &mut dyn Loader) -> Vec<String> {
     (0..sources.len()).map(|file| sources.name(file).to_owned()).collect()
 }
 
+/// The mistakes in a source text itself, as far as they can be known without what it is imported by
+/// and what it imports in vain: a file without a sequence may be a part of a program, whose other
+/// files may declare any name. With the files that were read; the first is the text.
+pub fn mistakes_in(
+    name: &str,
+    source: &str,
+    loader: &mut dyn Loader,
+) -> (Sources, Vec<Diagnostic>) {
+    let loaded = load::load(name, source, loader);
+    let mut found = compile_loaded(&loaded, &Defaults::new()).diagnostics;
+    if found.iter().any(|one| one.code == Code::NoMain) {
+        let parsed = merge::parse(&loaded);
+        let allows = Allows::of(&loaded.sources, &parsed.program);
+        let reports = Reports::new(Some(LeftOut::endless()), allows);
+        let defaults = Defaults::new();
+        let Lowered { reports, .. } =
+            compile_tree(&loaded.sources, &parsed.program, &defaults, reports);
+        found = parsed.diagnostics;
+        found.extend(reports.into_diagnostics());
+        found.sort_by_key(|diagnostic| diagnostic.primary.span);
+    }
+    found.retain(|one| {
+        let is_here = loaded.sources.locate(one.primary.span).file == 0;
+        is_here && one.severity == Severity::Error && one.code != Code::CannotImport
+    });
+    (loaded.sources, found)
+}
+
 /// What became of the files of a program.
 struct Built {
     module: Option<Module>,
@@ -136,6 +165,11 @@ fn compile_tree(
         check::check(sources, tree, defaults, reports);
     let module = checked.filter(|_| reports.is_whole()).and_then(|program| {
         let effects = Effects::of(&program);
+        if reports.has_errors() {
+            // What branches share they share whatever else is wrong.
+            forks::check(&program, &effects, &mut reports);
+            return None;
+        }
         reversal::check(&program, &effects, &mut reports);
         forks::check(&program, &effects, &mut reports);
         recursion::check(&program, &effects, &mut reports);

@@ -9,7 +9,7 @@ use obverse_syntax::codes::Code;
 use obverse_syntax::diagnostic::Diagnostic;
 use obverse_syntax::sources::Sources;
 use obverse_syntax::span::{Span, Spanned};
-use obverse_syntax::{MAX_SOURCE_BYTES, imports};
+use obverse_syntax::{MAX_SOURCE_BYTES, imports, nearest};
 use std::collections::HashMap;
 
 /// How many files a program may import, those that cannot be read among them.
@@ -35,6 +35,12 @@ pub trait Loader {
     /// # Errors
     /// Why it cannot be read.
     fn read(&mut self, name: &str) -> Result<String, String>;
+
+    /// The names of the files of a folder that can be imported, as far as they can be told; the
+    /// folder of the program is empty. Asked for where there is no file that a path leads to.
+    fn files(&mut self, _folder: &str) -> Vec<String> {
+        Vec::new()
+    }
 }
 
 /// A program of one file.
@@ -73,6 +79,18 @@ pub(crate) fn load(name: &str, text: &str, loader: &mut dyn Loader) -> Loaded {
     let mut loading = Loading { loader, loaded, files, asked: HashMap::new(), chain: Vec::new() };
     loading.imports_of(0);
     loading.loaded
+}
+
+/// What a file is by its name, if it is no source text, and how it is named instead.
+fn other_kind(written: &str) -> Option<(&'static str, String)> {
+    let (_, extension) = written.rsplit_once('.')?;
+    Some(match extension {
+        "toml" => ("a workcell", format!("a program names its workcell by `cell \"{written}\"`")),
+        "obvasm" => ("assembly text", "what is imported is source text, `.obv`".to_owned()),
+        "obc" => ("a module", "what is imported is source text, `.obv`".to_owned()),
+        "tape" => ("a tape", "what is imported is source text, `.obv`".to_owned()),
+        _ => return None,
+    })
 }
 
 /// An import that is being followed.
@@ -137,7 +155,7 @@ impl Loading<'_> {
             let names = library::FILES.map(|(name, _)| name);
             let diagnostic = Diagnostic::error(Code::CannotImport, at, message, "imported here")
                 .with_note(format!("it has {}", names.join(", ")));
-            self.loaded.diagnostics.push(match obverse_syntax::nearest(written, names) {
+            self.loaded.diagnostics.push(match nearest(written, names) {
                 Some(meant) => diagnostic.did_you_mean(at, &format!("\"{meant}\"")),
                 None => diagnostic,
             });
@@ -166,9 +184,19 @@ impl Loading<'_> {
             loading.report(Code::CannotImport, at, message, "imported here");
             None
         };
+        if let Some((kind, help)) = other_kind(written.value) {
+            let message = format!("`{}` cannot be imported: this is {kind}", written.value);
+            let diagnostic = Diagnostic::error(Code::CannotImport, at, message, "imported here");
+            self.loaded.diagnostics.push(diagnostic.with_help(help));
+            return None;
+        }
         let name = match self.loader.name(path) {
             Ok(name) => name,
-            Err(why) => return refuse(self, &why),
+            Err(why) => {
+                refuse(self, &why);
+                self.suggest(path, written);
+                return None;
+            }
         };
         if let Some(known) = self.files.get(&name) {
             return *known;
@@ -185,6 +213,27 @@ impl Loading<'_> {
             Err(why) => return refuse(self, &why),
         };
         self.follow(&name, &text, at)
+    }
+
+    /// Add to the diagnostic of a file that is not there the one that was probably meant.
+    fn suggest(&mut self, path: &str, written: Spanned<&str>) {
+        let (folder, name) = path.rsplit_once('/').unwrap_or(("", path));
+        let mut files = self.loader.files(folder);
+        // What is under way cannot be meant.
+        let under_way = std::iter::once(0).chain(self.chain.iter().map(|link| link.file));
+        for file in under_way {
+            let own = self.loaded.sources.name(file);
+            let (at, own) = own.rsplit_once('/').unwrap_or(("", own));
+            files.retain(|name| at != folder || name != own);
+        }
+        let full = format!("{name}.obv");
+        let same = files.iter().find(|file| **file == full).map(String::as_str);
+        let Some(meant) = same.or(nearest(name, files.iter().map(String::as_str))) else { return };
+        let Some(diagnostic) = self.loaded.diagnostics.pop() else { return };
+        let folder =
+            written.value.rsplit_once('/').map_or(String::new(), |(at, _)| format!("{at}/"));
+        let meant = format!("\"{folder}{meant}\"");
+        self.loaded.diagnostics.push(diagnostic.did_you_mean(written.span, &meant));
     }
 
     /// Add a file, and all that it imports.

@@ -11,7 +11,7 @@ use obverse_isa::{
 };
 use obverse_syntax::span::Span;
 
-/// A program without mistakes.
+/// A program. What has mistakes is not in it.
 #[derive(Debug)]
 pub(crate) struct Program {
     /// The tables, complete but for what lowering adds; without code.
@@ -55,6 +55,21 @@ pub(crate) struct Function {
     pub(crate) kept: Option<Kept>,
     /// What it does.
     pub(crate) body: Body,
+}
+
+impl Function {
+    /// One that has a mistake: it does nothing.
+    pub(crate) fn absent() -> Self {
+        Self {
+            name: String::new(),
+            kind: FunctionKind::Sequence,
+            named: Span::default(),
+            layout: Layout::default(),
+            modal: Vec::new(),
+            kept: None,
+            body: Body::Block(Block::default()),
+        }
+    }
 }
 
 /// A block that is both a part of a function and a function of its own, with the same frame.

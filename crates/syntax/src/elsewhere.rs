@@ -34,8 +34,8 @@ const fn read_as(words: &'static [&'static str], help: &'static str, token: Toke
 }
 
 /// How a program is ended.
-pub(crate) const END: &str = "`return` ends the sequence; to stop the program `throw` an error that \
-                              has `severity fatal`";
+pub(crate) const END: &str = "`return` ends the sequence; to stop the program `throw` an error \
+                              that has `severity fatal`";
 
 /// How a loop is left whose condition stands at its end.
 pub(crate) const UNTIL: &str =
@@ -49,11 +49,11 @@ const INPUT: &str = "an input is read by its number or name: `input 3`";
 pub(crate) const TOOL: &str =
     "tools stand in the workcell file, and one is chosen by its name: `tool gripper`";
 const REMEMBER: &str = "to remember where the arm is write `position here`, then `move to here`";
-const OFFSET: &str = "poses are not computed: a move goes so far from here, `move 20 mm up in base` or \
-                      `move 20 mm forward in tcp`, and a place relative to something is a \
+const OFFSET: &str = "poses are not computed: a move goes so far from here, `move 20 mm up in \
+                      base` or `move 20 mm forward in tcp`, and a place relative to something is a \
                       `keyframe` of the item";
-pub(crate) const PLACE: &str = "a place in space is a `keyframe` of an item; one of the arm is declared by its \
-                     joints, `joints NAME = [..] deg`";
+pub(crate) const PLACE: &str = "a place in space is a `keyframe` of an item; one of the arm is \
+                                declared by its joints, `joints NAME = [..] deg`";
 pub(crate) const ITEM: &str =
     "a place is relative to an item, as a `keyframe` of the item: `move to ITEM.KEYFRAME`";
 const STOP_MOTION: &str = "what stops a motion stands in an `advanced move`: `stop if force > 5 N`";
@@ -127,8 +127,8 @@ const STATEMENTS: &[Row] = &[
     line(&["decr"], "write `n -= 1`"),
     line(
         &["retry"],
-        "an error says how it goes on: `then return to action` does the same again, and an advanced \
-         move says it by `on failure { repeat with perturbation 3 times }`",
+        "an error says how it goes on: `then return to action` does the same again, and an \
+         advanced move says it by `on failure { repeat with perturbation 3 times }`",
     ),
     line(&["trynext"], "an error says how it goes on: `then continue` does the next action"),
     line(
@@ -155,8 +155,8 @@ const STATEMENTS: &[Row] = &[
     opens(&["try", "catch", "except", "finally"], AFTER_ERROR),
     opens(
         &["proc", "def", "deffct", "func", "function", "fn", "void", "procedure", "main", "task"],
-        "write `sequence NAME { .. }`, or `action NAME(PARAMETER: TYPE) { .. }`; the program begins \
-         with `sequence main`",
+        "write `sequence NAME { .. }`, or `action NAME(PARAMETER: TYPE) { .. }`; the program \
+         begins with `sequence main`",
     ),
     opens(
         &["module", "namespace", "package"],
@@ -177,8 +177,8 @@ const STATEMENTS: &[Row] = &[
     read_as(&["let", "const"], "write `var`", Token::Var),
 ];
 
-/// What stands elsewhere in the place of a statement that has no value here: of these the whole line
-/// is written otherwise, `p2 := CRobT();` too.
+/// What stands elsewhere in the place of a statement that has no value here: of these the whole
+/// line is written otherwise, `p2 := CRobT();` too.
 const PLACES: &[(&[&str], &str)] = &[
     (
         &["crobt", "cjointt", "$posact", "$axisact", "getactualtcppose", "getactualjointpositions"],

@@ -127,29 +127,24 @@ pub(crate) fn of_assigned(rest: &str) -> Option<(&str, Habit)> {
 }
 
 /// What is made of a word of the language that begins a statement as in another one, and which word
-/// tells: `while True:`, `if get_digital_in(3):`, `sleep(0.5)`.
-pub(crate) fn of_own<'r>(word: &'r str, rest: &'r str) -> Option<(&'r str, Habit)> {
+/// tells: `while True:`, `if get_digital_in(3):`, `wait sec 0.5`.
+pub(crate) fn of_own<'r>(word: &str, rest: &'r str) -> Option<(&'r str, Habit)> {
+    let of_controller = words(rest).find(|word| word.starts_with('$'));
     if let Some(habit) = wait(word, rest)
-        && (habit.instead.is_some() || rest.contains('$'))
+        && (habit.instead.is_some() || of_controller.is_some())
     {
-        return Some((first_word(rest), habit));
-    }
-    if let "sleep" | "wait" = word {
-        let code = rest.split("//").next().unwrap_or_default();
-        let time = code.trim_end_matches([' ', '\t', ';']).strip_prefix('(')?.strip_suffix(')')?;
-        time.parse().ok().filter(|time: &f64| time.is_finite())?;
-        let instead = format!("wait {time} s");
-        let help = format!("write `{instead}`");
-        return Some((word, Habit { help, instead: Some(instead), then: Then::NextLine }));
+        return Some((of_controller.unwrap_or(first_word(rest)), habit));
     }
     if !matches!(word, "if" | "while") || rest.contains('{') {
         return None;
     }
     let condition = first_word(rest);
-    if word == "while" && matches!(condition, "True" | "TRUE") {
+    let ends_as = |end: &str| rest.trim_end().ends_with(end);
+    let is_open = ends_as(":") || ends_as(" do") || ends_as(" DO");
+    if word == "while" && is_open && matches!(condition, "True" | "TRUE") {
         return Some((condition, said("write `loop { .. }`".to_owned(), Then::InBlock)));
     }
-    let (told, value) = value_in(rest)?;
+    let (told, value) = value_in(rest, true)?;
     let help = format!("write `{word} CONDITION {{ .. }}`; {value}");
     Some((told, said(help, Then::InBlock)))
 }
@@ -298,8 +293,8 @@ fn level(word: &str) -> Option<&'static str> {
     }
 }
 
-/// `DO[1]=ON`, `$OUT[1] = TRUE`, `R[2]=R[2]+1`, `J P[1] 100% FINE`: signals, registers and positions
-/// by number.
+/// `DO[1]=ON`, `$OUT[1] = TRUE`, `R[2]=R[2]+1`, `J P[1] 100% FINE`: signals, registers and
+/// positions by number.
 fn numbered(plain: &str, rest: &str) -> Option<Habit> {
     let number = rest.strip_prefix('[').and_then(|rest| rest.split_once(']'));
     let help = match (plain, number) {
@@ -346,7 +341,7 @@ fn capital(word: &str, rest: &str) -> Option<Habit> {
             _ if is_for_ever => "write `loop { .. }`",
             _ => "write `while CONDITION { .. }`",
         };
-        let value = value_in(rest).map_or(String::new(), |(_, value)| format!("; {value}"));
+        let value = value_in(rest, false).map_or(String::new(), |(_, value)| format!("; {value}"));
         return Some(said(format!("{written}{value}"), Then::InBlock));
     }
     let help = format!("the words of the language are written in small letters: `{small}`");
@@ -358,12 +353,19 @@ fn is_word_of_language(small: &str) -> bool {
     RESERVED_WORDS.contains(&small) || FREE_WORDS.contains(&small)
 }
 
-/// The first word of a text that has a value elsewhere, and what is said of it. A word of this
-/// language too is meant where it is called.
-fn value_in(text: &str) -> Option<(&str, &'static str)> {
+/// The first word of a text that has a value elsewhere, and what is said of it. Where variables may
+/// have such a name, it is meant where it is called: nothing of that name can be here.
+fn value_in(text: &str, is_called: bool) -> Option<(&str, &'static str)> {
+    let mut behind = text;
     words(text).find_map(|word| {
-        let is_own = is_word_of_language(word) && !text.contains(&format!("{word}()"));
-        value_elsewhere(word).filter(|_| !is_own).map(|help| (word, help))
+        behind = behind.split_once(word)?.1;
+        let help = value_elsewhere(word)?;
+        let is_empty_call = behind.starts_with("()");
+        let is_meant = match is_word_of_language(word) {
+            true => is_empty_call,
+            false => !is_called || word.starts_with('$') || behind.starts_with('('),
+        };
+        is_meant.then_some((word, help))
     })
 }
 
@@ -447,12 +449,16 @@ mod tests {
     fn a_block_of_another_language_is_told_by_its_condition() {
         let told = |word, rest| of_own(word, rest).map(|(told, _)| told);
         assert_eq!(told("while", " True:"), Some("True"));
+        assert_eq!(told("while", " True"), None, "a variable");
+        assert_eq!(told("if", " power > 3 and di"), None, "variables");
+        assert_eq!(told("if", " a mod (b) > 3"), None, "an operator");
+        assert_eq!(told("if", " force() > 5:"), Some("force"));
         assert_eq!(told("if", " not get_digital_in(3):"), Some("get_digital_in"));
         assert_eq!(told("if", " get_digital_in(3) {"), None);
         assert_eq!(told("if", " force > 3 N"), None);
-        assert_eq!(told("sleep", "(0.5)"), Some("sleep"));
-        assert_eq!(told("sleep", "(0.5 s)"), None);
-        assert_eq!(told("wait", " 0.5 s"), None);
+        assert_eq!(told("wait", " sec 0.5"), Some("sec"));
+        assert_eq!(told("wait", " for $in[3]"), Some("$in"));
+        assert_eq!(told("wait", " sec"), None, "a variable");
     }
 
     #[test]

@@ -22,6 +22,10 @@ const DECLARING: [&str; 11] = [
     "position",
 ];
 
+/// The words of clauses that such a word may follow without declaring: `then return to sequence`,
+/// or, by mistake, `severity error`.
+const IN_CLAUSES: [&str; 4] = ["severity", "to", "current", "up"];
+
 /// The words of what a tree lacks.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct LeftOut {
@@ -69,9 +73,11 @@ impl LeftOut {
 
     fn take(&mut self, source: &str, span: Span) {
         let text = source.get(span.start as usize..span.end as usize).unwrap_or("");
+        let mut before = "";
         for (word, behind) in words_of(text) {
             self.words.insert(word.to_owned());
-            self.is_endless |= lacks_name(word, behind);
+            self.is_endless |= !IN_CLAUSES.contains(&before) && lacks_name(word, behind);
+            before = word;
         }
     }
 
@@ -173,6 +179,14 @@ mod tests {
         assert!(may_declare(source, "helper"));
         assert!(may_declare(source, "wiat"));
         assert!(!may_declare(source, "help"));
+    }
+
+    #[test]
+    fn a_word_in_a_clause_declares_nothing() {
+        for clause in ["severity error", "then retrun to action", "respond aftr current sequence"] {
+            let source = format!("error jam {{\n{clause}\n}}\nsequence main {{ call help }}\n");
+            assert!(!may_declare(&source, "help"), "{clause}");
+        }
     }
 
     #[test]

@@ -1,7 +1,7 @@
 //! Source text to the tokens that the grammar reads: numbers joined with their units, assigned
 //! words told from others, what is foreign reported and replaced, what is too deep refused. It
-//! knows the text around a token, and nothing of the grammar. What is written as in another language
-//! is in `elsewhere`.
+//! knows the text around a token, and nothing of the grammar. What is written as in another
+//! language is in `elsewhere`.
 
 mod elsewhere;
 
@@ -141,7 +141,7 @@ impl<'s, 'k> Lexer<'s, 'k> {
     /// A word that begins a statement, which clauses are none.
     fn statement_word(&mut self, token: Token) -> Option<Token> {
         use Token::{Distance, If, Io, Move, Set, Sleep, Toggle, Wait, While};
-        if matches!(token, If | Sleep | Wait | While) && self.is_of_another_language() {
+        if matches!(token, If | Wait | While) && self.is_of_another_language() {
             return None;
         }
         let Some((of, 1)) = self.clauses.filter(|_| self.begins_statement()) else {

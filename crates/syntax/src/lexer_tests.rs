@@ -102,6 +102,7 @@ fn foreign_characters_are_reported_and_replaced() {
     assert_eq!(lex("c ! a b"), (vec![(Name, "c")], vec![code]));
     assert_eq!(lex("; a b\nc"), (vec![(Name, "c")], vec![code]));
     assert_eq!(lex("c; a = 3").1, []);
+    assert_eq!(lex("c\n; a // b\n= 3").1, []);
     assert_eq!(lex("# a b\nc"), (vec![(Name, "c")], vec![code]));
     assert_eq!(lex("/* a\nb */ c"), (vec![(Name, "c")], vec![code]));
     assert_eq!(lex("/* a\nb"), (vec![(Name, "b")], vec![code]));

@@ -59,6 +59,9 @@ pub(crate) struct Sink<'s> {
     /// The end of the last mistake, while nothing whole has been read since: a further mistake of
     /// grammar is then taken for a consequence.
     aftermath: Cell<Option<u32>>,
+    /// The same of what the parser could not take, alone: what the lexer, which is ahead, finds in
+    /// the meantime does not change that.
+    amiss: Cell<Option<u32>>,
     /// Whether that mistake was the lexer's, which has put something right in its place.
     is_lexical: Cell<bool>,
     /// Where the mistake begins that was found last.
@@ -136,7 +139,7 @@ impl<'s> Sink<'s> {
         self.given_up.borrow_mut().push(Span::new(start, end));
         self.unexpected(recovery.error, end);
         if begins_anew(rest) {
-            self.aftermath.set(None);
+            self.settle_mistake();
         }
     }
 
@@ -164,10 +167,14 @@ impl<'s> Sink<'s> {
             self.block.set(BlockKind::Foreign);
         }
         // The lexer is ahead of the parser: what it found behind the token is no cause.
-        let is_after = self.aftermath.get().is_some() && self.newest.get() <= span.start;
+        let is_after = match self.newest.get() <= span.start {
+            true => self.aftermath.get().is_some(),
+            false => self.amiss.get().is_some(),
+        };
         let is_consequence = is_after || self.block.get() == BlockKind::Foreign;
         self.unsettle(end.max(span.start));
         self.is_lexical.set(false);
+        self.amiss.set(self.aftermath.get());
         if !is_consequence && self.count_one() {
             self.syntax_errors.borrow_mut().push(SyntaxError { span, found, expected });
         }
@@ -188,8 +195,12 @@ impl<'s> Sink<'s> {
     pub(crate) fn settle(&self, end: u32) {
         self.built();
         self.settled.set(end);
-        if self.aftermath.get().is_some_and(|mistake| end > mistake) {
+        let is_behind = |mistake: Option<u32>| mistake.is_some_and(|mistake| end > mistake);
+        if is_behind(self.aftermath.get()) {
             self.aftermath.set(None);
+        }
+        if is_behind(self.amiss.get()) {
+            self.amiss.set(None);
         }
         if self.block.get() == BlockKind::Unknown {
             self.block.set(BlockKind::Expected);
@@ -209,7 +220,7 @@ impl<'s> Sink<'s> {
     pub(crate) fn block_has_statements(&self) {
         if self.block.get() == BlockKind::Unknown {
             self.block.set(BlockKind::Expected);
-            self.aftermath.set(None);
+            self.settle_mistake();
         }
     }
 
@@ -218,7 +229,7 @@ impl<'s> Sink<'s> {
         self.block.set(outer);
         let rest = rest.trim_start_matches([' ', '\t']);
         if !rest.starts_with(|c: char| c.is_ascii_alphanumeric()) {
-            self.aftermath.set(None);
+            self.settle_mistake();
         }
     }
 
@@ -230,7 +241,7 @@ impl<'s> Sink<'s> {
     /// A declaration that was found in a block: it is kept as if it stood at the top.
     pub(crate) fn misplaced(&self, item: Item<'s>, diagnostic: Diagnostic) {
         self.report(diagnostic);
-        self.aftermath.set(None);
+        self.settle_mistake();
         self.misplaced.borrow_mut().push(item);
     }
 
@@ -242,7 +253,7 @@ impl<'s> Sink<'s> {
             self.report(diagnostic());
         }
         if begins_anew(rest) {
-            self.aftermath.set(None);
+            self.settle_mistake();
         }
     }
 
@@ -275,6 +286,12 @@ impl<'s> Sink<'s> {
             syntax_errors,
             misplaced,
         }
+    }
+
+    /// What follows is no consequence of a mistake.
+    fn settle_mistake(&self) {
+        self.aftermath.set(None);
+        self.amiss.set(None);
     }
 
     fn unsettle(&self, end: u32) {

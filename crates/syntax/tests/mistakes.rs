@@ -196,7 +196,8 @@ fn a_path_stands_in_quotes() {
 #[test]
 fn each_line_of_other_languages_is_told() {
     let source = "sequence main {\n  PULSE($OUT[1],TRUE,0.5)\n  SWITCH n\n  ENDSWITCH\n\
-                  $VEL.CP=0.05\n  FOR n=1 TO 5\n    PTP P1\n  ENDFOR\n  frob($IN[2], 3)\n  LIN P2\n}";
+                  $VEL.CP=0.05\n  FOR n=1 TO 5\n    PTP P1\n  ENDFOR\n\
+                  frob($IN[2], 3)\n  LIN P2\n  wait for 3 s\n  LIN P3\n}";
     let words: Vec<&str> = mistakes(source).into_iter().map(|(_, text)| text).collect();
     let expected = [
         "PULSE($OUT[1],TRUE,0.5)",
@@ -206,6 +207,8 @@ fn each_line_of_other_languages_is_told() {
         "PTP P1",
         "frob",
         "LIN P2",
+        "for",
+        "LIN P3",
     ];
     assert_eq!(words, expected);
 }

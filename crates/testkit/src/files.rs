@@ -24,6 +24,14 @@ impl Loader for Folder {
     fn read(&mut self, name: &str) -> std::result::Result<String, String> {
         self.0.get(name).cloned().ok_or_else(|| "no such file".to_owned())
     }
+
+    fn files(&mut self, folder: &str) -> Vec<String> {
+        let inside = self.0.keys().filter_map(|path| match folder {
+            "" => Some(path.as_str()),
+            folder => path.strip_prefix(folder)?.strip_prefix('/'),
+        });
+        inside.filter(|name| !name.contains('/')).map(str::to_owned).collect()
+    }
 }
 
 impl Folder {

@@ -6,7 +6,7 @@ use super::names::{Found, Meaning};
 use super::{A_VALUE, Checker};
 use crate::tree::{Expression, ExpressionKind, Hoist, Prepared};
 use crate::types::ValueType;
-use crate::units::Unit;
+use crate::units::{Dimension, Unit};
 use obverse_isa::{Instr, LocalId};
 use obverse_syntax::ast;
 use obverse_syntax::codes::Code;
@@ -17,6 +17,9 @@ use obverse_syntax::span::{Span, Spanned};
 pub(super) const MAX_COMPUTED: usize = 200;
 /// How many values a statement holds at a time at the most.
 pub(super) const MAX_HELD: usize = 120;
+
+/// Numbers that are longer, in bytes, are not written again in a message.
+const MAX_REPEATED: usize = 20;
 
 /// What a value is needed for.
 #[derive(Clone, Debug)]
@@ -126,7 +129,7 @@ impl<'s> Checker<'s> {
             (ValueType::Real(unit), ValueType::Int | ValueType::NUMBER) if is_literal => {
                 let message = format!("{what} needs {needed}, and this number has no unit");
                 Diagnostic::error(Code::MissingUnit, span, message, "a number without a unit")
-                    .with_help(format!("write the unit after it: {}", unit.examples()))
+                    .with_help(format!("write the unit after it: {}", self.with_units(span, unit)))
             }
             (ValueType::Real(unit), ValueType::Real(_)) => {
                 let diagnostic =
@@ -154,6 +157,23 @@ impl<'s> Checker<'s> {
             diagnostic = diagnostic.with_label(*place, format!("{needed}, says this"));
         }
         self.reports.add(diagnostic);
+    }
+
+    /// A number as it is written, with each unit that it may lack; or the units alone.
+    fn with_units(&self, span: Span, of: Dimension) -> String {
+        let mut number = self.text(span);
+        while let Some(inner) = number.strip_prefix('(').and_then(|rest| rest.strip_suffix(')')) {
+            number = inner.trim();
+        }
+        let units = of.examples();
+        let is_plain = number.len() <= MAX_REPEATED
+            && number.starts_with(|c: char| c.is_ascii_digit() || c == '-')
+            && !units.contains("one");
+        if !is_plain {
+            return units.to_owned();
+        }
+        let written = units.split(" or ").map(|unit| format!("`{number} {unit}`"));
+        written.collect::<Vec<_>>().join(" or ")
     }
 
     /// An expression with its type.

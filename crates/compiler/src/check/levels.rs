@@ -1,5 +1,5 @@
-//! Levels where other languages have values: `input 2 == high`, `lamp = 1`. Here an input is a truth
-//! value, and an output is set. It knows what was meant by them, and no types but that.
+//! Levels where other languages have values: `input 2 == high`, `lamp = 1`. Here an input is a
+//! truth value, and an output is set. It knows what was meant by them, and no types but that.
 
 use super::Checker;
 use super::names::{Found, Meaning};
@@ -89,7 +89,8 @@ impl<'s> Checker<'s> {
         }
     }
 
-    fn text(&self, span: Span) -> &str {
+    /// What stands at a place.
+    pub(super) fn text(&self, span: Span) -> &str {
         let range = span.start as usize..span.end as usize;
         self.sources.whole().get(range).unwrap_or_default()
     }

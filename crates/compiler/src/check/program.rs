@@ -24,7 +24,7 @@ use std::collections::{BTreeSet, HashMap};
 
 /// What became of the check of a program.
 pub(crate) struct Checked {
-    /// The checked tree, if there are no mistakes.
+    /// The checked tree; with mistakes it lacks what has them.
     pub(crate) program: Option<tree::Program>,
     /// The actions with their parameters.
     pub(crate) actions: Vec<Action>,
@@ -34,7 +34,8 @@ pub(crate) struct Checked {
     pub(crate) reports: Reports,
 }
 
-/// Check a program; without mistakes there is a checked tree.
+/// Check a program. There is a checked tree unless the program has nothing to begin with, or too
+/// much of something.
 pub(crate) fn check<'s>(
     sources: &'s Sources,
     program: &Program<'s>,
@@ -52,15 +53,20 @@ pub(crate) fn check<'s>(
     let types = checker.names.types();
     let flow = std::mem::take(&mut checker.keyframes);
     flow.check(&checker.module, &mut checker.reports);
-    let Checker { reports, functions, module, first_values, named_faults, .. } = checker;
-    let functions: Option<Vec<tree::Function>> = functions.into_iter().collect();
+    let Checker { reports, functions, module, first_values, named_faults, full, .. } = checker;
     let mut reports = reports;
-    let program = match (main, functions) {
-        (Some(main), Some(functions)) if !reports.has_errors() => {
+    let can_be_followed =
+        full.is_empty() && (reports.has_errors() || functions.iter().all(Option::is_some));
+    let absent = |function: Option<_>| function.unwrap_or_else(tree::Function::absent);
+    let functions: Vec<tree::Function> = functions.into_iter().map(absent).collect();
+    let program = match main {
+        Some(main) if can_be_followed => {
             let cleanup = module.cleanup.map(FunctionId);
             let checked = tree::Program { module, first_values, functions, main, cleanup };
-            reached::check(&checked, sources, &unnamed, &mut reports);
-            faults::check(&checked, &named_faults, &mut reports);
+            if !reports.has_errors() {
+                reached::check(&checked, sources, &unnamed, &mut reports);
+                faults::check(&checked, &named_faults, &mut reports);
+            }
             Some(checked)
         }
         _ => None,

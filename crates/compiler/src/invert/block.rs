@@ -261,6 +261,13 @@ impl<'p> Inverter<'p> {
             StatementKind::Call { name, arguments } => self.call(*name, arguments, span),
             StatementKind::Primitive(primitive) => self.output(primitive, settling, span),
             StatementKind::Io(name) => self.io_operation(*name, span).into_iter().collect(),
+            StatementKind::Advance(name) => match self.advanced_move(*name, span) {
+                Some(inverse) => one(StatementKind::Advance(inverse)),
+                None => {
+                    self.arm = Arm::refused();
+                    Vec::new()
+                }
+            },
             StatementKind::Wait(time) => {
                 self.require_pure(time);
                 one(statement.kind.clone())
@@ -300,7 +307,6 @@ impl<'p> Inverter<'p> {
             }
             StatementKind::Variable(_) | StatementKind::Allow(_) => Vec::new(),
             StatementKind::WithInReverse { .. }
-            | StatementKind::Advance(_)
             | StatementKind::WaitUntil { .. }
             | StatementKind::Remember(_)
             | StatementKind::Loop(_)
@@ -349,11 +355,6 @@ fn joined(emitted: Vec<Emitted<'_>>) -> Vec<Statement<'_>> {
 /// What is said of a statement that has no inverse whatever stands around it.
 fn never(statement: &Statement<'_>) -> Diagnostic {
     let (message, why, help) = match &statement.kind {
-        StatementKind::Advance(_) => (
-            "an advanced move has no inverse",
-            "where it ends depends on what it meets",
-            "say what leads back: `do { advance .. } in reverse { .. }`",
-        ),
         StatementKind::WaitUntil { .. } => (
             "a wait with an `else` has no inverse",
             "which way is taken depends on the input",

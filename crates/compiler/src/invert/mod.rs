@@ -14,6 +14,7 @@ mod block;
 mod checked;
 mod control;
 mod effect;
+mod guarded;
 mod head;
 mod motion;
 mod output;

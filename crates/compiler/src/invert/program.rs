@@ -7,8 +7,8 @@ use super::effect::{Declared, Effect, Facts, Key, Value, constant};
 use super::refusal::refusal;
 use super::walk;
 use obverse_syntax::ast::{
-    Allow, Block, IoOperation, Item, Name, Program, Sequence, Signal, SignalKind, Statement,
-    StatementKind, VariableDeclaration,
+    AdvancedMove, Allow, Block, IoOperation, Item, Name, Program, Sequence, Signal, SignalKind,
+    Statement, StatementKind, VariableDeclaration,
 };
 use obverse_syntax::codes::Code;
 use obverse_syntax::diagnostic::Diagnostic;
@@ -28,6 +28,7 @@ pub(super) struct Plan<'s> {
     order: Vec<&'s Sequence<'s>>,
     sequences: HashMap<&'s str, &'s Sequence<'s>>,
     io: HashMap<&'s str, &'s IoOperation<'s>>,
+    advanced_moves: HashMap<&'s str, &'s AdvancedMove<'s>>,
     joints: HashSet<&'s str>,
     items: HashSet<&'s str>,
     globals: HashSet<&'s str>,
@@ -79,6 +80,7 @@ impl<'s> Plan<'s> {
             order: Vec::new(),
             sequences: HashMap::new(),
             io: HashMap::new(),
+            advanced_moves: HashMap::new(),
             joints: HashSet::new(),
             items: HashSet::new(),
             globals: HashSet::new(),
@@ -94,6 +96,7 @@ impl<'s> Plan<'s> {
                 Item::Joints(joints) => _ = plan.joints.insert(joints.name.value),
                 Item::Variable(variable) => _ = plan.globals.insert(variable.name.value),
                 Item::Sequence(one) => _ = plan.sequences.insert(one.name.value, one),
+                Item::AdvancedMove(one) => _ = plan.advanced_moves.insert(one.name.value, one),
                 Item::ItemDeclaration(item) => _ = plan.items.insert(item.name.value),
                 Item::Signal(entry) => {
                     if entry.kind == SignalKind::Output {
@@ -103,7 +106,6 @@ impl<'s> Plan<'s> {
                 Item::Cell(_)
                 | Item::Import(_)
                 | Item::Error(_)
-                | Item::AdvancedMove(_)
                 | Item::Cleanup(_)
                 | Item::Allow(_) => {}
             }
@@ -145,6 +147,11 @@ impl<'s> Plan<'s> {
     /// The name of an I/O operation as it is declared.
     pub(super) fn io_name(&self, name: &str) -> Option<&'s str> {
         self.io.get(name).map(|io| io.name.value)
+    }
+
+    /// The advanced move of this name.
+    pub(super) fn advanced_move(&self, name: &str) -> Option<&'s AdvancedMove<'s>> {
+        self.advanced_moves.get(name).copied()
     }
 
     /// The calls that lead from the root to a sequence, the innermost first.

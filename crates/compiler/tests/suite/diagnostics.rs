@@ -332,27 +332,6 @@ sequence main { advance silent advance told advance meant advance free }
 }
 
 #[test]
-fn a_sequence_that_always_calls_itself_is_warned_of() {
-    check(
-        r#"
-error jam { then stop }
-sequence plain { wait 1 s call plain }
-sequence within { speed slow { irreversible "glue" { call within } } }
-sequence branch { if holding { call branch } call once }
-sequence leaves { if holding { return } call leaves }
-sequence throws { if holding { throw jam } call throws }
-sequence given_up { call throws call given_up }
-sequence counted { repeat 3 times { call counted } }
-sequence once { wait 1 s }
-sequence main {
-  call plain call within call branch call leaves call throws call given_up call counted
-}
-"#,
-        &[r#"W0005 2:27 "call plain""#, r#"W0005 3:54 "call within""#],
-    );
-}
-
-#[test]
 fn a_move_to_an_item_is_told_its_keyframes() {
     let help = |item: &str| {
         let source = format!("{item}\nsequence main {{ move to block }}");

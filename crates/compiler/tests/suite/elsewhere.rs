@@ -103,7 +103,7 @@ const USES: &[Use] = &[
     of("WaitTime 0.5", "WaitTime 0.5;", "wait 0.5 s"),
     of("WAIT SEC 0.5", "WAIT SEC 0.5", "wait 0.5 s"),
     of("WAIT SEC 0.5", "wait sec 0.5", "wait 0.5 s"),
-    of("sleep(0.5)", "sleep(0.5)", "wait 0.5 s"),
+    of("sleep(0.5)", "sleep(0.5)", "0.5 s"),
     of("SetAO", "SetAO ao1, 5.0;", "an output is high or low"),
     of("$ANOUT[]", "$ANOUT[1] = 0.5", "an output is high or low"),
     of("set_standard_analog_out", "set_standard_analog_out(0, 0.5)", "an output is high or low"),

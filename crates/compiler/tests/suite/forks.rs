@@ -39,6 +39,34 @@ fn each_device_is_of_one_branch() {
 }
 
 #[test]
+fn what_branches_share_is_found_beside_other_mistakes() {
+    let mistakes = [
+        ("fork { wait 1 s }", "E0601"),
+        ("fork { return } and { wait 1 s }", "E0602"),
+        ("call nowhere", "E0101"),
+        ("wait 3", "E0203"),
+        ("advance broken", "E0209"),
+    ];
+    for (mistake, code) in mistakes {
+        let source = format!(
+            "advanced move broken {{ }}
+             sequence main {{
+               {mistake}
+               if holding {{ advance broken }}
+               fork {{ set 1 high }} and {{ set 1 low }}
+               var n = 0
+               fork {{ n = 1 }} and {{ n = 2 }}
+               if n > 0 {{ wait 1 s }}
+             }}"
+        );
+        let found = findings(&source);
+        let has = |code: &str| found.iter().any(|one| one.starts_with(code));
+        let is_all = has("E0603") && has("E0604") && (has(code) || code == "E0209");
+        assert!(is_all, "{mistake}: {found:#?}");
+    }
+}
+
+#[test]
 fn inputs_and_reading_are_shared() {
     check(
         "var n = 1

@@ -206,3 +206,55 @@ fn files_that_are_cut_off_are_no_end() {
         }
     }
 }
+
+/// The help and the suggested path of the only diagnostic of what imports this.
+fn meant(import: &str) -> (Option<String>, Option<String>) {
+    let mut folder = Named(&["main.obv", "poses.obv", "p1.obv", "cell/io_map.obv"]);
+    let source = format!("import {import}\nsequence main {{ move to nowhere }}");
+    let mut found = compile_files("main.obv", &source, &mut folder).diagnostics;
+    assert_eq!(found.len(), 1, "{import}: {found:#?}");
+    let found = found.remove(0);
+    (found.help, found.suggestion.map(|change| change.text))
+}
+
+/// Files of which the names matter alone.
+struct Named(&'static [&'static str]);
+
+impl Loader for Named {
+    fn name(&mut self, path: &str) -> Result<String, String> {
+        let is_there = self.0.contains(&path);
+        is_there.then(|| path.to_owned()).ok_or_else(|| "no such file".to_owned())
+    }
+
+    fn read(&mut self, _name: &str) -> Result<String, String> {
+        Ok(String::new())
+    }
+
+    fn files(&mut self, folder: &str) -> Vec<String> {
+        let folder = if folder.is_empty() { String::new() } else { format!("{folder}/") };
+        let inside = self.0.iter().filter_map(|path| path.strip_prefix(folder.as_str()));
+        inside.filter(|name| !name.contains('/')).map(str::to_owned).collect()
+    }
+}
+
+#[test]
+fn a_file_that_is_not_there_may_be_another() {
+    let cases = [
+        ("\"Poses.obv\"", Some("\"poses.obv\"")),
+        ("\"pose.obv\"", Some("\"poses.obv\"")),
+        ("\"p1\"", Some("\"p1.obv\"")),
+        ("\"cell/iomap.obv\"", Some("\"cell/io_map.obv\"")),
+        ("\"strategies.obv\"", None),
+        ("\"mains.obv\"", None),
+    ];
+    for (written, path) in cases {
+        assert_eq!(meant(written).1.as_deref(), path, "{written}");
+    }
+}
+
+#[test]
+fn what_is_no_source_text_is_one_mistake() {
+    let (help, _) = meant("\"cell.toml\"");
+    assert_eq!(help.as_deref(), Some("a program names its workcell by `cell \"cell.toml\"`"));
+    assert!(meant("\"main.obc\"").0.is_some());
+}

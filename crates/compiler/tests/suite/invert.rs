@@ -15,6 +15,18 @@ io on { set 5 high } reverse off
 io off { set 5 low } reverse on
 var x = 0
 var y = 1
+advanced move press {
+  distance 9 mm down
+  on success { return to initial position }
+  on failure { return to initial position }
+} reverse lift
+advanced move lift {
+  distance 9 mm up
+  on success { return to initial position }
+  on failure { return to initial position }
+} reverse press
+advanced move stays { distance 9 mm down } reverse leaves
+advanced move leaves { distance 9 mm up } reverse stays
 action pick { move to a; move to b linearly; move to a }
 action nudge { move 2 mm up; move 2 mm down }
 action stray { move 2 mm up }
@@ -312,4 +324,27 @@ sequence main { call work }
 ";
     let message = "what takes this back does not compile";
     assert_eq!(refusals(source, "work"), [format!("5 \"reversible always\" {message}")]);
+}
+
+#[test]
+fn an_advanced_move_that_ends_where_it_begins_becomes_its_counterpart() {
+    becomes(
+        &["move to a", "advance press", "move to b", "advance lift"],
+        &["move to b", "advance press", "move to a", "advance lift"],
+    );
+    refused("move to a\nadvance stays\nmove to b", "an advanced move has no inverse");
+}
+
+#[test]
+fn what_is_said_of_an_advanced_move_has_an_inverse() {
+    let body = "move to a\nadvance stays\nmove to c";
+    let Err(NoInverse::Diagnosed(found)) = invert("work.obv", &program(body), "work") else {
+        panic!("it has an inverse")
+    };
+    let help = found[0].help.clone().unwrap_or_default();
+    let written = help.split('`').nth(1).unwrap_or_default();
+    let written = written.replace("advance ..", "advance stays").replace("THERE", "b");
+    let body = body.replace("advance stays", &written);
+    let inverse = inverse(&body).expect("it has an inverse now").join("\n");
+    assert!(inverse.contains("advance leaves"), "{inverse}");
 }

@@ -19,6 +19,7 @@ mod library;
 mod limits;
 mod module;
 mod parameters;
+mod recursion;
 mod reversal;
 mod reversal_mistakes;
 mod reversal_words;

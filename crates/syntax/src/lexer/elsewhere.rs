@@ -22,7 +22,7 @@ impl<'s> Lexer<'s, '_> {
         let is_of_controller = word.starts_with('$');
         if !is_of_controller && is_before_assignment(rest) {
             let line = self.short_line();
-            return match line.and_then(|line| Some((line, habits::of_assigned(line)?))) {
+            return match line.and_then(|line| Some((line, habits::of_assigned(code(line))?))) {
                 Some((line, (told, habit))) => self.leave_out(line, Some((told, &habit))),
                 None => Some(self.word(Token::Name)),
             };
@@ -38,7 +38,7 @@ impl<'s> Lexer<'s, '_> {
             let habit = habits::end_of_block(word);
             return self.leave_out(line, (!is_awaited).then_some((word, &habit)));
         }
-        let habit = habits::of(word, line).filter(|_| !self.is_declared(word));
+        let habit = habits::of(word, code(line)).filter(|_| !self.is_declared(word));
         let Some(habit) = habit else {
             // It can only be a mistake; after an earlier one the parser goes on here.
             if !std::mem::replace(&mut self.has_stray_word, true) {
@@ -67,7 +67,7 @@ impl<'s> Lexer<'s, '_> {
             return false;
         }
         let Some(line) = self.short_line() else { return false };
-        let Some((word, habit)) = habits::of_own(self.tokens.slice(), line) else {
+        let Some((word, habit)) = habits::of_own(self.tokens.slice(), code(line)) else {
             return false;
         };
         self.foreign_blocks += u32::from(habit.then == Then::InBlock);
@@ -93,7 +93,7 @@ impl<'s> Lexer<'s, '_> {
     /// Leave the rest of a line out, as far as a brace or a comment; reported is what is made of a
     /// word in it, if anything.
     pub(super) fn leave_out(&mut self, line: &str, told: Option<(&str, &Habit)>) -> Option<Token> {
-        let code = &line[..line.find("//").unwrap_or(line.len())];
+        let code = code(line);
         // `PTP {X 10, Y 20}` is of a piece.
         let is_of_a_piece = code.matches('{').count() == code.matches('}').count()
             && told.is_some_and(|(_, habit)| habit.then == Then::NextLine);
@@ -160,10 +160,12 @@ impl<'s> Lexer<'s, '_> {
             return false;
         }
         let line = self.line().trim_start_matches([' ', '\t']);
-        let (word, behind) = line.split_at(ascii_word_length(line));
+        let word = &line[..ascii_word_length(line)];
         let is_name = Token::lexer(word).next() == Some(Ok(Token::Name));
-        let is_prose =
-            is_name && !is_before_assignment(behind) && habits::of(word, behind).is_none();
+        // What is assigned may stand on a line of its own.
+        let rest = self.rest().trim_start_matches([' ', '\t']);
+        let behind = rest.get(word.len()..).unwrap_or("");
+        let is_prose = is_name && !is_before_assignment(behind);
         is_prose || line.starts_with(['-', '*', '=', '#', '!', '&'])
     }
 
@@ -207,4 +209,9 @@ impl<'s> Lexer<'s, '_> {
         let line = rest.find(['\r', '\n']).unwrap_or(rest.len());
         self.tokens.bump(rest.find("*/").map_or(line, |end| end + "*/".len()));
     }
+}
+
+/// A line without the comment at its end.
+fn code(line: &str) -> &str {
+    &line[..line.find("//").unwrap_or(line.len())]
 }
