@@ -198,6 +198,23 @@ impl Places {
         Err(PlaceError::NoName { name: name.to_owned(), meant: meant.map(str::to_owned) })
     }
 
+    /// Of an error of the program: where the code raises it.
+    ///
+    /// # Errors
+    /// If there is no such error.
+    pub fn of_error(module: &Module, name: &str) -> Result<Self, PlaceError> {
+        let mut errors = module.errors.iter();
+        let Some(index) = errors.position(|error| error.name == name) else {
+            let meant = nearest(name, module.errors.iter().map(|error| error.name.as_str()));
+            let (name, meant) = (name.to_owned(), meant.map(str::to_owned));
+            return Err(PlaceError::NoName { name, meant });
+        };
+        let raises =
+            |instr: &Instr| matches!(instr, Instr::ErrorRaise { error } if error.index() == index);
+        let pcs = instructions(module, raises);
+        Ok(Self { name: format!("error {name}"), pcs, line: None })
+    }
+
     /// Of an instruction, or the first after it before which a run can stop.
     ///
     /// # Errors
