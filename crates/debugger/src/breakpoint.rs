@@ -181,7 +181,10 @@ impl Places {
             return Ok(at(stop_from(module, function.first).into_iter().collect()));
         }
         if let Some(checkpoint) = module.checkpoints.iter().position(|known| known == name) {
-            let is_it = |instr: &Instr| matches!(instr, Instr::Checkpoint { checkpoint: at } if at.index() == checkpoint);
+            let is_it = |instr: &Instr| match instr {
+                Instr::Checkpoint { checkpoint: at } => at.index() == checkpoint,
+                _ => false,
+            };
             return Ok(at(instructions(module, is_it)));
         }
         if let Some(kind) = action_kind(name) {

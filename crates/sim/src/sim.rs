@@ -93,8 +93,8 @@ impl Sim {
         sim
     }
 
-    /// Draw anew what is still to come: where fixtures truly are, noise, and chance. Items stay where
-    /// they are.
+    /// Draw anew what is still to come: where fixtures truly are, noise, and chance. Items stay
+    /// where they are.
     pub fn reseed(&mut self, seed: u64) {
         self.world = Arc::new(World::new(self.world.cell.clone(), seed));
     }
