@@ -102,36 +102,39 @@ fn gauge(value: f64, [least, most]: [f64; 2]) -> String {
 
 pub(super) fn state(front: &mut Front<'_>, _: &str) -> Done {
     let variables = front.session.workcell();
-    let mut lines = Vec::new();
-    let mut outputs = Vec::new();
-    for variable in &variables {
-        match (&variable.subject, &variable.value) {
-            (_, Value::Joints(joints)) => {
-                lines.extend(joints.iter().zip(1..).map(|(joint, at)| {
-                    let degrees = joint.to_degrees();
-                    format!("joint {at}  {degrees:>8.2} deg  [{}]", gauge(degrees, [-180.0, 180.0]))
-                }))
-            }
-            (Some(Subject::Force), Value::Real(force)) => {
-                lines.push(format!("force    {force:>8.2} N    [{}]", gauge(*force, [0.0, 50.0])));
-            }
-            (Some(Subject::Time), Value::Real(time)) => {
-                lines.push(format!("time     {time:>8.2} s"))
-            }
-            (Some(Subject::Output(_)), Value::Bool(level)) => {
-                let level = if *level { "high" } else { "low" };
-                outputs.push(format!("{} {level}", variable.name));
-            }
-            (_, Value::Name(name)) if name.is_empty() => {
-                lines.push(format!("{:<8} none", variable.name));
-            }
-            (_, value) => lines.push(format!("{:<8} {value}", variable.name)),
-        }
-    }
+    let is_output = |it: &&Variable| matches!(it.subject, Some(Subject::Output(_)));
+    let (outputs, others): (Vec<&Variable>, Vec<&Variable>) = variables.iter().partition(is_output);
+    let mut lines: Vec<String> = others.into_iter().flat_map(shown).collect();
+    let level = |it: &&Variable| {
+        let level = if it.value == Value::Bool(true) { "high" } else { "low" };
+        format!("{} {level}", it.name)
+    };
+    let outputs: Vec<String> = outputs.iter().map(level).collect();
     lines.extend(outputs.chunks(4).map(|some| some.join(", ")));
     let values: Map<String, Json> =
         variables.iter().map(|it| (it.name.clone(), json_of(&it.value))).collect();
     Ok(Answer::lines(lines).with("values", values))
+}
+
+/// What is seen of the workcell but its outputs, in columns.
+fn shown(variable: &Variable) -> Vec<String> {
+    let name = &variable.name;
+    vec![match (&variable.subject, &variable.value) {
+        (_, Value::Joints(joints)) => {
+            let joint = |(joint, at): (&f64, u8)| {
+                let degrees = joint.to_degrees();
+                let gauge = gauge(degrees, [-180.0, 180.0]);
+                format!("joint {at}  {degrees:>8.2} deg  [{gauge}]")
+            };
+            return joints.iter().zip(1..).map(joint).collect();
+        }
+        (Some(Subject::Force), Value::Real(force_n)) => {
+            format!("{name:<8} {force_n:>8.2} N    [{}]", gauge(*force_n, [0.0, 50.0]))
+        }
+        (Some(Subject::Time), Value::Real(time_s)) => format!("{name:<8} {time_s:>8.2} s"),
+        (_, Value::Name(text)) if text.is_empty() => format!("{name:<8} none"),
+        (_, value) => format!("{name:<8} {value}"),
+    }]
 }
 
 pub(super) fn history(front: &mut Front<'_>, rest: &str) -> Done {
