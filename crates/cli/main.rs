@@ -6,6 +6,7 @@
 
 mod commands;
 mod cycle;
+mod debug;
 mod files;
 mod framing;
 mod lacking;
@@ -38,7 +39,7 @@ Exit codes:
      assembly that is not as the workcell file says;
      for `check`, a move fails, the check of the moves could not be done as a whole, or there is
      a warning that `--deny` names; for `fmt --check`, a file would change; for `invert`, the
-     sequence has no inverse
+     sequence has no inverse; for `debug`, a command from a file or a pipe was not carried out
   2  the input is wrong (command line, source, module, tape, workcell file), and nothing was run;
      or the output cannot be written. With `--json` the last line on standard output is then
      a summary with the outcome `refused`, and the messages";
@@ -59,6 +60,8 @@ enum Command {
     Back(commands::back::Arguments),
     /// Show how far back each line of a program can go, and what stops it.
     Reach(commands::reach::Arguments),
+    /// Walk through a run in both directions, and try what would have been.
+    Debug(commands::debug::Arguments),
     /// Show the instructions of a program, with the class of each.
     Dis(commands::dis::Arguments),
     /// Try a program over many seeded assemblies, by one strategy or several.
@@ -84,6 +87,7 @@ impl Command {
             Self::Build(arguments) => arguments.json,
             Self::Run(arguments) => arguments.common.json,
             Self::Back(arguments) => arguments.json,
+            Self::Debug(arguments) => arguments.json,
             Self::Dis(arguments) => arguments.json,
             Self::Reach(arguments) => arguments.json,
             Self::Trials(arguments) => arguments.json,
@@ -117,6 +121,7 @@ fn main() -> ExitCode {
         Command::Run(arguments) => commands::run::run(&arguments),
         Command::Back(arguments) => commands::back::run(&arguments),
         Command::Reach(arguments) => commands::reach::run(&arguments),
+        Command::Debug(arguments) => commands::debug::run(&arguments),
         Command::Dis(arguments) => commands::dis::run(&arguments),
         Command::Trials(arguments) => commands::trials::run(&arguments),
         Command::Learn(arguments) => commands::learn::run(&arguments),

@@ -136,3 +136,8 @@ fn bytes_out(bytes: &[u8]) {
 pub(crate) fn line(text: &str) {
     out(&format!("{text}\n"));
 }
+
+/// Print text that was made [`printable`] before it was coloured.
+pub(crate) fn coloured(text: &str) {
+    bytes_out(text.as_bytes());
+}

@@ -22,8 +22,8 @@ fn has_line(story: &str, words: &[&str]) -> bool {
 fn the_help_lists_the_commands_and_the_exit_codes() {
     let help = Bench::new("help").ends(0, &["--help"]).stdout;
     for command in [
-        "check", "fmt", "invert", "build", "run", "back", "dis", "reach", "trials", "lsp", "tape",
-        "isa", "explain",
+        "check", "fmt", "invert", "build", "run", "back", "dis", "debug", "reach", "trials", "lsp",
+        "tape", "isa", "explain",
     ] {
         assert!(help.contains(&format!("\n  {command} ")), "{command} in\n{help}");
     }

@@ -2,6 +2,7 @@
 //! it says to wrong input.
 
 mod commands;
+mod debug;
 mod fmt;
 mod imports;
 mod invert;

@@ -181,7 +181,10 @@ impl Places {
             return Ok(at(stop_from(module, function.first).into_iter().collect()));
         }
         if let Some(checkpoint) = module.checkpoints.iter().position(|known| known == name) {
-            let is_it = |instr: &Instr| matches!(instr, Instr::Checkpoint { checkpoint: at } if at.index() == checkpoint);
+            let is_it = |instr: &Instr| match instr {
+                Instr::Checkpoint { checkpoint: at } => at.index() == checkpoint,
+                _ => false,
+            };
             return Ok(at(instructions(module, is_it)));
         }
         if let Some(kind) = action_kind(name) {
@@ -196,6 +199,23 @@ impl Places {
         let names = names.chain(module.checkpoints.iter().map(String::as_str));
         let meant = nearest(name, names.chain(ACTIONS.iter().map(|(name, _)| *name)));
         Err(PlaceError::NoName { name: name.to_owned(), meant: meant.map(str::to_owned) })
+    }
+
+    /// Of an error of the program: where the code raises it.
+    ///
+    /// # Errors
+    /// If there is no such error.
+    pub fn of_error(module: &Module, name: &str) -> Result<Self, PlaceError> {
+        let mut errors = module.errors.iter();
+        let Some(index) = errors.position(|error| error.name == name) else {
+            let meant = nearest(name, module.errors.iter().map(|error| error.name.as_str()));
+            let (name, meant) = (name.to_owned(), meant.map(str::to_owned));
+            return Err(PlaceError::NoName { name, meant });
+        };
+        let raises =
+            |instr: &Instr| matches!(instr, Instr::ErrorRaise { error } if error.index() == index);
+        let pcs = instructions(module, raises);
+        Ok(Self { name: format!("error {name}"), pcs, line: None })
     }
 
     /// Of an instruction, or the first after it before which a run can stop.

@@ -5,6 +5,7 @@ use crate::recording::Moment;
 use obverse_isa::{Class, Instr};
 use obverse_vm::{Direction, Event, Observer};
 use obverse_workcell::Workcell;
+use std::cell::Cell;
 
 /// Something that a run did.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -42,6 +43,8 @@ pub(crate) struct Noting<'n> {
     /// What is to be added to the machine's count for the moment.
     pub(crate) offset: u64,
     pub(crate) observer: &'n mut dyn Observer,
+    /// Raised while it is told: what it reads, the program did not.
+    pub(crate) is_telling: &'n Cell<bool>,
 }
 
 impl Observer for Noting<'_> {
@@ -57,6 +60,8 @@ impl Observer for Noting<'_> {
                 open_blocks: event.open_blocks,
             });
         }
+        self.is_telling.set(true);
         self.observer.on_event(event, cell);
+        self.is_telling.set(false);
     }
 }

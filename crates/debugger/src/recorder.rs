@@ -11,7 +11,7 @@ use obverse_workcell::{
     Arm, Clock, Dice, DigitalIo, Fault, ForceTorque, Gripper, ItemId, Items, Motion, MotionReport,
     Safety, ToolId, Workcell,
 };
-use std::cell::RefCell;
+use std::cell::{Cell, RefCell};
 use std::collections::BTreeMap;
 
 /// How many copies of a workcell are kept along a run.
@@ -108,6 +108,8 @@ pub struct Recorder<'r, C> {
     copies: Option<&'r mut Copies<C>>,
     /// Inputs that are read as these levels, whatever they are.
     forced: &'r BTreeMap<u16, bool>,
+    /// Whether who reads is told of the run, and not the program: that is not recorded.
+    is_overheard: &'r Cell<bool>,
 }
 
 impl<'r, C: Workcell> Recorder<'r, C> {
@@ -118,8 +120,15 @@ impl<'r, C: Workcell> Recorder<'r, C> {
         senses: &'r mut Senses,
         copies: Option<&'r mut Copies<C>>,
         forced: &'r BTreeMap<u16, bool>,
+        is_overheard: &'r Cell<bool>,
     ) -> Self {
-        Self { cell, log, senses: RefCell::new(senses), copies, forced }
+        Self { cell, log, senses: RefCell::new(senses), copies, forced, is_overheard }
+    }
+
+    fn read(&self, sense: Sense, value: u64) {
+        if !self.is_overheard.get() {
+            self.senses.borrow_mut().note(sense, value);
+        }
     }
 
     fn note(&mut self, command: Command, fault: Option<&Fault>) {
@@ -238,7 +247,7 @@ impl<C: Workcell> DigitalIo for Recorder<'_, C> {
             None => self.cell.input(bit),
         };
         let value = read.as_ref().map_or(2, |level| u64::from(*level));
-        self.senses.borrow_mut().note(Sense::Input(bit), value);
+        self.read(Sense::Input(bit), value);
         read
     }
 }
@@ -252,7 +261,7 @@ impl<C: Workcell> Gripper for Recorder<'_, C> {
 impl<C: Workcell> ForceTorque for Recorder<'_, C> {
     fn force_n(&self) -> f64 {
         let force_n = self.cell.force_n();
-        self.senses.borrow_mut().note(Sense::Force, force_n.to_bits());
+        self.read(Sense::Force, force_n.to_bits());
         force_n
     }
 }
@@ -272,7 +281,7 @@ impl<C: Workcell> Clock for Recorder<'_, C> {
 impl<C: Workcell> Dice for Recorder<'_, C> {
     fn draw(&self, counter: u64) -> f64 {
         let draw = self.cell.draw(counter);
-        self.senses.borrow_mut().note(Sense::Draw(counter), draw.to_bits());
+        self.read(Sense::Draw(counter), draw.to_bits());
         draw
     }
 }

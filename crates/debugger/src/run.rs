@@ -14,6 +14,7 @@ use crate::timeline::{Checkpoint, Timeline};
 use obverse_bytecode::Verified;
 use obverse_vm::{LinkError, Machine, Observer, Stop};
 use obverse_workcell::{Fault, Workcell};
+use std::cell::Cell;
 use std::collections::BTreeMap;
 
 /// One line of history.
@@ -90,7 +91,8 @@ impl<'p, C: Workcell> Run<'p, C> {
             let until_due = self.timeline.until_due(rewound.moment());
             let to = rewound.moment().after(until_due.unwrap_or(1)).min(self.recording.end);
             let offset = rewound.moment().0.wrapping_sub(rewound.machine().executed());
-            let mut noting = Noting { notes: &mut self.notes, offset, observer: &mut () };
+            let (notes, is_telling) = (&mut self.notes, &Cell::new(false));
+            let mut noting = Noting { notes, offset, observer: &mut (), is_telling };
             let Some(_) = rewound.advance_some(&self.recording, to, &mut noting) else { break };
             if self.timeline.until_due(rewound.moment()).is_none() {
                 self.timeline.keep(rewound.checkpoint());
@@ -169,9 +171,11 @@ impl<'p, C: Workcell> Run<'p, C> {
             Pace::To(stops, most) => Pace::To(stops, most.min(until_due)),
         };
         let (log, senses) = (&mut self.recording.log, &mut self.senses);
-        let mut recorder = Recorder::new(cell, log, senses, self.copies.as_mut(), &self.forced);
+        let (copies, is_telling) = (self.copies.as_mut(), Cell::new(false));
+        let mut recorder = Recorder::new(cell, log, senses, copies, &self.forced, &is_telling);
         let offset = self.recording.end.0.wrapping_sub(self.machine.executed());
-        let mut noting = Noting { notes: &mut self.notes, offset, observer };
+        let (notes, is_telling) = (&mut self.notes, &is_telling);
+        let mut noting = Noting { notes, offset, observer, is_telling };
         let driven = drive(&mut self.machine, order, pace, &mut recorder, &mut noting);
         drop(recorder);
         let is_trapped = matches!(driven.stop, Some(Stop::Trap(_)));
@@ -201,7 +205,8 @@ impl<'p, C: Workcell> Run<'p, C> {
         let Some(cell) = self.cell.as_mut() else { return };
         let (log, senses) = (&mut self.recording.log, &mut self.senses);
         let copies = self.copies.as_mut();
-        let mut recorder = Recorder::new(cell, log, senses, copies, &self.forced);
+        let nobody = Cell::new(false);
+        let mut recorder = Recorder::new(cell, log, senses, copies, &self.forced, &nobody);
         obverse_workcell::Safety::release(&mut recorder);
     }
 }

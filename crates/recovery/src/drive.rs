@@ -23,7 +23,8 @@ pub fn drive(
 }
 
 /// How a run ended that stopped; none if it goes on from there.
-pub(crate) fn ending(stop: Stop, machine: &Machine<'_>) -> Option<Ending> {
+#[must_use]
+pub fn ending(stop: Stop, machine: &Machine<'_>) -> Option<Ending> {
     Some(match stop {
         Stop::Raised { .. } | Stop::Due { .. } => return None,
         Stop::Finished if machine.state().raised().is_empty() => Ending::Finished,

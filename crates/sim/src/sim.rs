@@ -99,6 +99,12 @@ impl Sim {
         sim
     }
 
+    /// Draw anew what is still to come: where fixtures truly are, noise, and chance. Items stay
+    /// where they are.
+    pub fn reseed(&mut self, seed: u64) {
+        self.world = Arc::new(World::new(self.world.cell.clone(), seed));
+    }
+
     /// Stop an act part way by a protective stop; a plan for an act that was begun already does
     /// nothing.
     pub fn inject(&mut self, plan: FaultPlan) {

@@ -45,7 +45,7 @@ impl Pens {
         perhaps: '-',
     };
 
-    fn of(&self, standing: Standing) -> char {
+    pub(super) fn of(&self, standing: Standing) -> char {
         match standing {
             Standing::Always => self.always,
             Standing::AfterForward => self.after_forward,

@@ -1,6 +1,7 @@
 //! `obverse reach`: show how far back each line of a program can go, and what stops it.
 
 mod draw;
+pub(crate) mod margin;
 mod page;
 mod words;
 

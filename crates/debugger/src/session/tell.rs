@@ -163,22 +163,15 @@ impl<C: Workcell> Session<'_, C> {
     pub fn history(&self) -> Vec<Action> {
         let module = self.module();
         let mut actions: Vec<Action> = Vec::new();
-        let mut newest: Option<(Note, u32)> = None;
+        let mut newest: Option<&Note> = None;
         for note in self.run().notes() {
-            let Some(entry) = module.source_at(note.pc) else { continue };
-            let goes_on = newest.is_some_and(|(before, first)| {
-                let is_on = match note.direction {
-                    Direction::Forward => note.pc > before.pc,
-                    Direction::Reverse => note.pc < before.pc,
-                };
-                first == entry.first
-                    && before.direction == note.direction
-                    && before.depth == note.depth
-                    && is_on
-            });
-            newest = Some((*note, entry.first));
+            if module.source_at(note.pc).is_none() {
+                continue;
+            }
+            let is_on = newest.is_some_and(|before| goes_on(module, before, note));
+            newest = Some(note);
             match actions.last_mut() {
-                Some(action) if goes_on => action.end_s = note.now_s,
+                Some(action) if is_on => action.end_s = note.now_s,
                 _ => actions.push(action(module, note)),
             }
         }
@@ -189,16 +182,13 @@ impl<C: Workcell> Session<'_, C> {
     #[must_use]
     pub fn why(&self) -> Why {
         let module = self.module();
-        let now = self.moment();
-        let is_never = |note: &&Note| {
+        let standing = self.standing();
+        let is_never = |note: &&&Note| {
             let class = module.code.get(note.pc as usize).map(|instr| instr.info().class);
             matches!(class, Some(Class::Never(_))) && note.open_blocks == 0
         };
-        let before = self.run().notes().iter().rev().filter(|note| note.moment < now);
-        let never = before.clone().find(is_never);
-        let since = never.map_or(Moment(0), |note| note.moment);
-        let history = self.history();
-        let between = history.iter().filter(|it| (since..now).contains(&it.moment));
+        let never = standing.iter().rev().find(is_never).copied();
+        let since = never.map_or(0, |note| note.steps);
         let state = self.machine().state();
         let stopper = never.map(|note| Stopper {
             pc: note.pc,
@@ -207,13 +197,57 @@ impl<C: Workcell> Session<'_, C> {
             reason: reason(module, note.pc).to_owned(),
         });
         let is_behind = |note: &Note| state.steps() == note.steps && state.pc() == note.pc + 1;
+        let mut newest: Option<&Note> = None;
+        let mut actions = 0;
+        for note in standing.iter().copied().filter(|note| note.steps > since) {
+            let is_action = module.source_at(note.pc).is_some_and(|entry| entry.action.is_some());
+            let is_on = newest.is_some_and(|before| goes_on(module, before, note));
+            actions += usize::from(is_action && !is_on);
+            newest = Some(note);
+        }
         Why {
             is_refused_here: never.is_some_and(is_behind),
             never: stopper,
             verdict: Reach::of(module).at(state.pc()),
-            actions: between.filter(|action| action.kind.is_some()).count(),
+            actions,
         }
     }
+
+    /// What was done before what is shown and has not been taken back, oldest first.
+    fn standing(&self) -> Vec<&Note> {
+        let now = self.moment();
+        let mut standing: Vec<&Note> = Vec::new();
+        // Done again, it is not what was done before it was taken back.
+        let cut = |standing: &mut Vec<&Note>, steps: u64| {
+            while standing.last().is_some_and(|last| last.steps > steps) {
+                standing.pop();
+            }
+        };
+        for note in self.run().notes().iter().filter(|note| note.moment < now) {
+            match note.direction {
+                Direction::Forward => {
+                    cut(&mut standing, note.steps.saturating_sub(1));
+                    standing.push(note);
+                }
+                Direction::Reverse => cut(&mut standing, note.steps),
+            }
+        }
+        cut(&mut standing, self.machine().state().steps());
+        standing
+    }
+}
+
+/// Whether a note is of the same action as the one before it.
+fn goes_on(module: &Module, before: &Note, note: &Note) -> bool {
+    let first = |note: &Note| module.source_at(note.pc).map(|entry| entry.first);
+    let is_on = match note.direction {
+        Direction::Forward => note.pc > before.pc,
+        Direction::Reverse => note.pc < before.pc,
+    };
+    is_on
+        && first(before) == first(note)
+        && before.direction == note.direction
+        && before.depth == note.depth
 }
 
 fn action(module: &Module, note: &Note) -> Action {

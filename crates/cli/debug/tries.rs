@@ -1,0 +1,71 @@
+//! What would have been: a run of its own, and what is changed in it.
+
+use super::{Answer, Done, Front};
+use obverse_debugger::{Declined, Expression, Subject};
+
+pub(super) fn what_if(front: &mut Front<'_>, _: &str) -> Done {
+    front.session.what_if().map_err(|why| why.to_string())?;
+    let hint = "what follows is tried in a copy of the workcell: `set`, `input` and `seed` change \
+                it, `leave` drops it";
+    Ok(Answer::lines(vec![hint.to_owned(), front.place_line()]))
+}
+
+pub(super) fn leave(front: &mut Front<'_>, _: &str) -> Done {
+    front.session.leave_what_if().map_err(|why| why.to_string())?;
+    front.listed = None;
+    Ok(Answer::line(front.place_line()))
+}
+
+pub(super) fn set(front: &mut Front<'_>, rest: &str) -> Done {
+    front.require_try()?;
+    let Some((name, text)) = rest.split_once('=') else {
+        return Err("say `set NAME = VALUE`".to_owned());
+    };
+    let (name, text) = (name.trim(), text.trim());
+    let is_name = name.chars().all(|c| c.is_alphanumeric() || "_$.".contains(c));
+    let place: Expression = front.expression(name)?;
+    let subject = match place.subjects()[..] {
+        [subject @ (Subject::Global(_) | Subject::Local(..))] if is_name => subject.clone(),
+        _ => return Err(format!("`{name}` is no variable")),
+    };
+    let given = front.expression(text)?;
+    let value = front.session.look(|look| given.value(look));
+    front.session.assign(&subject, &value).map_err(|why| match why {
+        Declined::NotAssignable => format!("`{name}` cannot be {value}"),
+        why => why.to_string(),
+    })?;
+    let now = front.session.look(|look| subject.read(look));
+    Ok(Answer::line(format!("{name} is {now}")))
+}
+
+pub(super) fn input(front: &mut Front<'_>, rest: &str) -> Done {
+    front.require_try()?;
+    let (name, level) = rest.rsplit_once(' ').unwrap_or((rest, ""));
+    let level = match level {
+        "high" => Some(true),
+        "low" => Some(false),
+        "real" => None,
+        _ => return Err("say `input NAME high`, `low`, or `real` for what it is".to_owned()),
+    };
+    let asked = front.expression(&format!("input {}", name.trim()))?;
+    let [Subject::Input(bit)] = asked.subjects()[..] else {
+        return Err(format!("`{name}` is no input"));
+    };
+    let (bit, count) = (*bit, front.session.recording().facts.inputs);
+    if bit >= count {
+        return Err(format!("the workcell has {count} inputs, numbered from 0"));
+    }
+    front.session.force_input(bit, level).map_err(|why| why.to_string())?;
+    Ok(Answer::line(match level {
+        Some(true) => format!("input {bit} reads high from here on"),
+        Some(false) => format!("input {bit} reads low from here on"),
+        None => format!("input {bit} reads as it is"),
+    }))
+}
+
+pub(super) fn seed(front: &mut Front<'_>, rest: &str) -> Done {
+    front.require_try()?;
+    let seed: u64 = rest.parse().map_err(|_| format!("`{rest}` is no seed: say a whole number"))?;
+    front.session.change_workcell(|cell| cell.reseed(seed)).map_err(|why| why.to_string())?;
+    Ok(Answer::line(format!("chance and noise follow from seed {seed} from here on")))
+}

@@ -1,0 +1,249 @@
+//! What there is at the moment that is shown: variables, the workcell, calls, history, the tape,
+//! and what stops going back.
+
+use super::{Answer, Done, Front};
+use crate::commands::reach::margin;
+use crate::{report, story};
+use obverse_debugger::session::{Action, Variable};
+use obverse_debugger::{Subject, Value};
+use obverse_vm::Direction;
+use serde_json::{Map, Value as Json, json};
+
+/// How much of the history is shown unless told otherwise, and at the most.
+const HISTORY: usize = 20;
+const MAX_HISTORY: usize = 10_000;
+/// How many marks a gauge has.
+const GAUGE: usize = 24;
+
+fn json_of(value: &Value) -> Json {
+    match value {
+        Value::Int(value) => json!(value),
+        Value::Real(value) => json!(value),
+        Value::Bool(value) => json!(value),
+        Value::Joints(joints) => json!(joints),
+        Value::Name(name) => json!(name),
+        Value::Absent => Json::Null,
+    }
+}
+
+fn listed(variables: &[Variable], none: &str) -> Answer {
+    let mut lines: Vec<String> = variables
+        .iter()
+        .map(|variable| format!("{} = {}", variable.name, variable.value))
+        .collect();
+    if lines.is_empty() {
+        lines.push(none.to_owned());
+    }
+    let values: Map<String, Json> =
+        variables.iter().map(|it| (it.name.clone(), json_of(&it.value))).collect();
+    Answer::lines(lines).with("values", values)
+}
+
+pub(super) fn print(front: &mut Front<'_>, rest: &str) -> Done {
+    if rest.is_empty() {
+        let frame = front.session.frames().len().saturating_sub(1);
+        let mut all = front.session.locals(frame);
+        all.extend(front.session.globals());
+        return Ok(listed(&all, "there are no variables here"));
+    }
+    let expression = front.expression(rest)?;
+    let value = front.session.look(|look| expression.value(look));
+    Ok(Answer::line(format!("{rest} = {value}")).with("value", json_of(&value)))
+}
+
+pub(super) fn locals(front: &mut Front<'_>, rest: &str) -> Done {
+    let innermost = front.session.frames().len().saturating_sub(1);
+    // Frames are counted from the innermost, as `backtrace` does.
+    let frame = match rest.parse::<usize>() {
+        _ if rest.is_empty() => innermost,
+        Ok(number) if number <= innermost => innermost - number,
+        _ => return Err(format!("`{rest}` is no call: they are numbered from 0 to {innermost}")),
+    };
+    Ok(listed(&front.session.locals(frame), "this call has no variables"))
+}
+
+pub(super) fn globals(front: &mut Front<'_>, _: &str) -> Done {
+    Ok(listed(&front.session.globals(), "the program has no variables"))
+}
+
+pub(super) fn backtrace(front: &mut Front<'_>, _: &str) -> Done {
+    let frames = front.session.frames();
+    let line = |(number, frame): (usize, &obverse_debugger::session::FrameView)| {
+        let place = report::line_of(front.module, frame.pc);
+        let place = frame.place.as_ref().map_or(place, |at| format!("{}:{}", at.file, at.line));
+        match frame.index {
+            0 => format!("#{number} the start"),
+            _ => format!("#{number} {} at {place}", frame.name),
+        }
+    };
+    let lines = frames.iter().rev().enumerate().map(line).collect();
+    let data: Vec<Json> = frames
+        .iter()
+        .rev()
+        .map(|frame| {
+            json!({
+                "function": frame.name,
+                "instruction": frame.pc,
+                "file": frame.place.as_ref().map(|place| &place.file),
+                "line": frame.place.as_ref().map(|place| place.line),
+            })
+        })
+        .collect();
+    Ok(Answer::lines(lines).with("frames", data))
+}
+
+/// A gauge of a number between two others.
+fn gauge(value: f64, [least, most]: [f64; 2]) -> String {
+    let part = ((value - least) / (most - least)).clamp(0.0, 1.0);
+    // Neither more nor less than one of the marks.
+    let at = (part * (GAUGE - 1) as f64).round() as usize;
+    (0..GAUGE).map(|mark| if mark == at { '#' } else { '.' }).collect()
+}
+
+pub(super) fn state(front: &mut Front<'_>, _: &str) -> Done {
+    let variables = front.session.workcell();
+    let is_output = |it: &&Variable| matches!(it.subject, Some(Subject::Output(_)));
+    let (outputs, others): (Vec<&Variable>, Vec<&Variable>) = variables.iter().partition(is_output);
+    let mut lines: Vec<String> = others.into_iter().flat_map(shown).collect();
+    let level = |it: &&Variable| {
+        let level = if it.value == Value::Bool(true) { "high" } else { "low" };
+        format!("{} {level}", it.name)
+    };
+    let outputs: Vec<String> = outputs.iter().map(level).collect();
+    lines.extend(outputs.chunks(4).map(|some| some.join(", ")));
+    let values: Map<String, Json> =
+        variables.iter().map(|it| (it.name.clone(), json_of(&it.value))).collect();
+    Ok(Answer::lines(lines).with("values", values))
+}
+
+/// What is seen of the workcell but its outputs, in columns.
+fn shown(variable: &Variable) -> Vec<String> {
+    let name = &variable.name;
+    vec![match (&variable.subject, &variable.value) {
+        (_, Value::Joints(joints)) => {
+            let joint = |(joint, at): (&f64, u8)| {
+                let degrees = joint.to_degrees();
+                let gauge = gauge(degrees, [-180.0, 180.0]);
+                format!("joint {at}  {degrees:>8.2} deg  [{gauge}]")
+            };
+            return joints.iter().zip(1..).map(joint).collect();
+        }
+        (Some(Subject::Force), Value::Real(force_n)) => {
+            format!("{name:<8} {force_n:>8.2} N    [{}]", gauge(*force_n, [0.0, 50.0]))
+        }
+        (Some(Subject::Time), Value::Real(time_s)) => format!("{name:<8} {time_s:>8.2} s"),
+        (_, Value::Name(text)) if text.is_empty() => format!("{name:<8} none"),
+        (_, value) => format!("{name:<8} {value}"),
+    }]
+}
+
+pub(super) fn history(front: &mut Front<'_>, rest: &str) -> Done {
+    let count = match rest.parse() {
+        _ if rest.is_empty() => HISTORY,
+        Ok(count @ 1..=MAX_HISTORY) => count,
+        _ => return Err(format!("say how many, from 1 to {MAX_HISTORY}")),
+    };
+    let actions = front.session.history();
+    let now = front.session.moment();
+    let behind = actions.partition_point(|action| action.moment < now);
+    // What came later is shown too: half as much of it.
+    let last = actions.len().min(behind + count / 2);
+    let first = behind.saturating_sub(count);
+    let shown = &actions[first..last];
+    let mut lines: Vec<String> = shown.iter().map(|action| words(front, action)).collect();
+    if behind < actions.len() {
+        lines.insert(behind - first, format!("{now:>7} > here"));
+    }
+    if lines.is_empty() {
+        lines.push("nothing was done".to_owned());
+    }
+    let data: Vec<Json> = shown
+        .iter()
+        .map(|action| {
+            json!({
+                "moment": action.moment.0,
+                "instruction": action.pc,
+                "line": action.place.as_ref().map(|place| place.line),
+                "forward": action.direction == Direction::Forward,
+                "text": action.text,
+                "end_s": action.end_s,
+            })
+        })
+        .collect();
+    Ok(Answer::lines(lines).with("history", data))
+}
+
+fn words(front: &Front<'_>, action: &Action) -> String {
+    let arrow = match action.direction {
+        Direction::Forward => ' ',
+        Direction::Reverse => '<',
+    };
+    let place = report::line_of(front.module, action.pc);
+    let text = story::said(front.module, action.pc);
+    format!("{:>7} {arrow} {:>7.2} s  {place}  {text}", action.moment, action.end_s)
+}
+
+pub(super) fn tape(front: &mut Front<'_>, _: &str) -> Done {
+    let Some(tape) = front.session.machine().tape() else {
+        return Ok(Answer::line("nothing is recorded: the run cannot go back"));
+    };
+    let place = tape.place();
+    let line = format!(
+        "{} bits from here back to {}: {} single bits, {} words, {} positions of the arm, {} words \
+         on turns of branches, {} faults",
+        place.size_bits(),
+        if place.size_bits() == tape.recorded_bits() {
+            "the start"
+        } else {
+            "what is never undone"
+        },
+        place.bits,
+        place.words,
+        place.joints,
+        place.control,
+        place.faults
+    );
+    let data = json!({
+        "bits": place.bits,
+        "words": place.words,
+        "joints": place.joints,
+        "control": place.control,
+        "faults": place.faults,
+        "recorded_bits": tape.recorded_bits(),
+    });
+    Ok(Answer::line(line).with("tape", data))
+}
+
+pub(super) fn why(front: &mut Front<'_>, _: &str) -> Done {
+    let why = front.session.why();
+    let actions = match why.actions {
+        0 => "no action".to_owned(),
+        1 => "1 action".to_owned(),
+        count => format!("{count} actions"),
+    };
+    let mut lines = Vec::new();
+    match &why.never {
+        Some(stopper) => {
+            let place = report::line_of(front.module, stopper.pc);
+            let text = story::said(front.module, stopper.pc);
+            lines.push(format!("going back ends at {place} `{text}`: {}", stopper.reason));
+            lines.push(match why.is_refused_here {
+                true => "that is the very next step back".to_owned(),
+                false => format!("{actions} back, at moment {}", stopper.moment),
+            });
+        }
+        None => lines.push(format!("nothing stops going back to the start: {actions}")),
+    }
+    let ends = margin::ends(front.module, front.session.machine().state().pc());
+    if !ends.is_empty() {
+        lines.push(format!("whatever way led here, it goes back to {}", ends.join(", or to ")));
+    }
+    let never = why.never.as_ref().map(|stopper| {
+        json!({
+            "at": report::place(front.module, Some(stopper.pc)),
+            "moment": stopper.moment.0,
+            "reason": stopper.reason,
+        })
+    });
+    Ok(Answer::lines(lines).with("never", never).with("ends", ends).with("actions", why.actions))
+}

@@ -1,0 +1,284 @@
+//! Walking and jumping, and what is said of where that led.
+
+use super::{Answer, Done, Front};
+use crate::report;
+use obverse_bytecode::FunctionKind;
+use obverse_debugger::recording::Moment;
+use obverse_debugger::{Change, Expression, Grain, Halt, Mode, Walk};
+use obverse_recovery::drive::ending;
+use obverse_vm::{Direction, Stop};
+use serde_json::{Value, json};
+use std::collections::BTreeMap;
+
+/// More steps than these are no count.
+const MAX_COUNT: u32 = 1_000_000;
+
+/// A count behind a command; 1 if there is none.
+fn count(text: &str) -> Result<u32, String> {
+    match text.parse() {
+        _ if text.is_empty() => Ok(1),
+        Ok(count @ 1..=MAX_COUNT) => Ok(count),
+        _ => Err(format!("`{text}` is no count: say a number from 1 to {MAX_COUNT}, or nothing")),
+    }
+}
+
+pub(super) fn go(front: &mut Front<'_>, rest: &str, direction: Direction, walk: Walk) -> Done {
+    let count = count(rest)?;
+    // Those that stop once are gone when they have.
+    let names = front.breakpoint_names();
+    let mut halt = Halt::Done;
+    for made in 0..count {
+        halt = match direction {
+            Direction::Forward => front.go_on(walk),
+            Direction::Reverse => front.session.go(direction, walk),
+        };
+        let goes_on = match walk {
+            Walk::Continue => matches!(halt, Halt::Hits(_)),
+            _ => halt == Halt::Done,
+        };
+        if !goes_on || made + 1 == count {
+            break;
+        }
+    }
+    front.listed = None;
+    let mut lines = front.halt_words(&halt, direction, &names);
+    lines.push(front.place_line());
+    let mut answer = Answer::lines(lines).with("halt", halt_code(&halt));
+    if let Halt::Hits(hits) = &halt {
+        let ids: Vec<u32> = hits.iter().map(|hit| hit.id).collect();
+        answer = answer.with("breakpoints", ids);
+    }
+    if let Some(refusal) = halt.refusal() {
+        answer = answer.with("stopped_at", report::place(front.module, Some(refusal.pc)));
+    }
+    Ok(answer)
+}
+
+/// Why a walk ended, for machines.
+fn halt_code(halt: &Halt) -> &'static str {
+    match halt {
+        Halt::Done => "done",
+        Halt::Hits(_) => "breakpoint",
+        Halt::Stopped(Stop::Finished) => "finished",
+        Halt::Stopped(Stop::Refused(_)) => "refused",
+        Halt::Stopped(Stop::Fault { .. }) => "fault",
+        Halt::Stopped(Stop::Trap(_)) => "trap",
+        Halt::Stopped(Stop::Due { .. } | Stop::Raised { .. }) => "error",
+        Halt::Stopped(Stop::AtStart | Stop::AtMark | Stop::OffMark) => "start",
+        Halt::Stopped(Stop::Budget) | Halt::Limit => "limit",
+        Halt::Changed => "changed",
+        Halt::EndOfRecording => "end_of_recording",
+        Halt::StartOfRecording => "start_of_recording",
+        Halt::Interrupted => "interrupted",
+        Halt::Lost => "lost",
+    }
+}
+
+impl Front<'_> {
+    /// Why a walk ended, in words; none if it did what it was to do.
+    fn halt_words(
+        &self,
+        halt: &Halt,
+        direction: Direction,
+        names: &BTreeMap<u32, String>,
+    ) -> Vec<String> {
+        let line = match halt {
+            Halt::Done => return Vec::new(),
+            Halt::Hits(hits) => {
+                let words = |hit: &obverse_debugger::Hit| {
+                    let name = names.get(&hit.id).map_or("", String::as_str);
+                    match &hit.change {
+                        Some((was, is)) => {
+                            format!("watch {}: {name} was {was} and is {is}", hit.id)
+                        }
+                        None => format!("breakpoint {}: {name}", hit.id),
+                    }
+                };
+                return hits.iter().map(words).collect();
+            }
+            Halt::Stopped(stop) => return self.stop_words(stop, direction),
+            Halt::Changed => "a variable was changed by hand here, and no record leads back over \
+                              it; `leave` goes back to the run as it was"
+                .to_owned(),
+            Halt::EndOfRecording => match self.session.run().cell() {
+                Some(_) => "this is where the run has come to; `goto end` makes it live again",
+                None => "this is where the recording ends",
+            }
+            .to_owned(),
+            Halt::StartOfRecording => "this is the start".to_owned(),
+            Halt::Limit => "it has run as many instructions as one command may; `--limit` sets \
+                            another number, and the command again goes on"
+                .to_owned(),
+            Halt::Interrupted => "interrupted".to_owned(),
+            Halt::Lost => "the recording does not fit the program".to_owned(),
+        };
+        vec![line]
+    }
+
+    fn stop_words(&self, stop: &Stop, direction: Direction) -> Vec<String> {
+        let module = self.module;
+        match stop {
+            Stop::Due { error, pc } | Stop::Raised { error, pc } => vec![
+                format!(
+                    "error {} is due at {}",
+                    module.errors[error.index()].name,
+                    report::line_of(module, *pc)
+                ),
+                "on: as the program says without going back; back: `reverse-next`, or `why`"
+                    .to_owned(),
+            ],
+            Stop::AtStart if direction == Direction::Forward => Vec::new(),
+            _ => {
+                let ending = ending(stop.clone(), self.session.machine());
+                let words = ending.map(|ending| report::ending_words(module, &ending));
+                let mut lines: Vec<String> = words.into_iter().collect();
+                if matches!(stop, Stop::Refused(_)) {
+                    let hint = "`goto` and `last` show what was before, and command nothing";
+                    lines.push(hint.to_owned());
+                }
+                lines
+            }
+        }
+    }
+
+    /// On. What is before the first sequence is written nowhere: a walk does not end there, and
+    /// goes into that sequence, since behind it is nothing.
+    fn go_on(&mut self, walk: Walk) -> Halt {
+        let (is_start, walk) = match walk {
+            Walk::Step(Grain::Statement) | Walk::Next(Grain::Statement) if self.is_in_start() => {
+                (true, Walk::Step(Grain::Statement))
+            }
+            _ => (false, walk),
+        };
+        loop {
+            let halt = self.session.go(Direction::Forward, walk);
+            if !is_start || halt != Halt::Done || !self.is_in_start() {
+                return halt;
+            }
+        }
+    }
+
+    fn is_in_start(&self) -> bool {
+        let kind = self.module.functions.get(self.function()).map(|function| function.kind);
+        kind == Some(FunctionKind::Start)
+    }
+
+    /// What a jump led to.
+    fn jumped(&mut self, mut lines: Vec<String>) -> Answer {
+        self.listed = None;
+        lines.push(self.place_line());
+        Answer::lines(lines)
+    }
+}
+
+pub(super) fn release(front: &mut Front<'_>, _: &str) -> Done {
+    front.session.release().map_err(|why| why.to_string())?;
+    Ok(Answer::line("the arm may move again"))
+}
+
+pub(super) fn goto(front: &mut Front<'_>, rest: &str) -> Done {
+    let session = &mut front.session;
+    let said = |why: obverse_debugger::Declined| why.to_string();
+    let before_error = |session: &mut obverse_debugger::Session<'_, _>| {
+        session.go_to_last_error().map_err(|_| "no error was raised before this moment".to_owned())
+    };
+    match rest {
+        "" => return Err("say where to: a moment, start, end, error, or a name".to_owned()),
+        "end" => session.go_to_end(),
+        "start" => session.go_to(Moment(0)).map_err(said)?,
+        "error" => drop(before_error(session)?),
+        _ if rest.starts_with(|c: char| c.is_ascii_digit()) => {
+            let moment = rest.parse().map_err(|_| format!("`{rest}` is no moment"))?;
+            session.go_to(Moment(moment)).map_err(said)?;
+        }
+        name if session.bookmarks().contains_key(name) => {
+            session.go_to_bookmark(name).map_err(said)?;
+        }
+        name => return to_checkpoint(front, name),
+    }
+    Ok(front.jumped(Vec::new()))
+}
+
+fn to_checkpoint(front: &mut Front<'_>, name: &str) -> Done {
+    let checkpoints = &front.module.checkpoints;
+    let Some(index) = checkpoints.iter().position(|known| known == name) else {
+        let marks = front.session.bookmarks().keys();
+        let known = marks.chain(checkpoints).map(String::as_str).chain(["start", "end", "error"]);
+        let meant = obverse_bytecode::text::nearest(name, known);
+        let hint = meant.map(|meant| format!("; did you mean `{meant}`?")).unwrap_or_default();
+        return Err(format!("`{name}` is no moment, bookmark or checkpoint{hint}"));
+    };
+    let checkpoint = obverse_isa::CheckpointId(index as u16);
+    let moment = front.session.go_to_checkpoint(checkpoint);
+    moment.map_err(|_| format!("checkpoint {name} was not passed before this moment"))?;
+    Ok(front.jumped(Vec::new()))
+}
+
+pub(super) fn last(front: &mut Front<'_>, rest: &str) -> Done {
+    let expression = front.expression(rest)?;
+    let change = front
+        .session
+        .go_to_last_change(&expression)
+        .map_err(|_| format!("{rest} did not change before this moment"))?;
+    let Change { moment, before, after } = change;
+    let line = format!("{rest} was {before} until here, and became {after}");
+    let data =
+        json!({ "moment": moment.0, "before": before.to_string(), "after": after.to_string() });
+    Ok(front.jumped(vec![line]).with("change", data))
+}
+
+pub(super) fn undo(front: &mut Front<'_>, _: &str) -> Done {
+    front.session.undo_jump().map_err(|why| why.to_string())?;
+    Ok(front.jumped(Vec::new()))
+}
+
+pub(super) fn bookmark(front: &mut Front<'_>, rest: &str) -> Done {
+    if rest.is_empty() {
+        return Ok(bookmarks(front));
+    }
+    let is_name = rest.chars().all(|c| c.is_alphanumeric() || "_-.".contains(c));
+    if !is_name || rest.starts_with(|c: char| c.is_ascii_digit()) {
+        return Err(format!("`{rest}` is no name: letters, digits, `_`, `-`, a letter first"));
+    }
+    if ["start", "end", "error"].contains(&rest) {
+        return Err(format!("`goto {rest}` means something else already"));
+    }
+    front.session.bookmark(rest);
+    Ok(Answer::line(format!("{rest} is moment {}", front.session.moment())))
+}
+
+pub(super) fn bookmarks(front: &Front<'_>) -> Answer {
+    let marks = front.session.bookmarks();
+    let lines: Vec<String> = marks.iter().map(|(name, at)| format!("{at:>8} {name}")).collect();
+    let data: Vec<Value> =
+        marks.iter().map(|(name, at)| json!({ "name": name, "moment": at.0 })).collect();
+    match lines.is_empty() {
+        true => Answer::line("there are no bookmarks"),
+        false => Answer::lines(lines),
+    }
+    .with("bookmarks", data)
+}
+
+impl Front<'_> {
+    /// An expression whose names are those of where the session stands.
+    pub(super) fn expression(&self, text: &str) -> Result<Expression, String> {
+        let function = self.function();
+        Expression::parse(self.module, function, text).map_err(|why| why.to_string())
+    }
+
+    /// The function that the session stands in.
+    pub(super) fn function(&self) -> usize {
+        self.module.function_at(self.session.machine().state().pc()).unwrap_or(0)
+    }
+
+    /// Whether something is tried, which alone can be changed by hand.
+    pub(super) fn require_try(&self) -> Result<(), String> {
+        match self.session.mode() {
+            Mode::WhatIf => Ok(()),
+            Mode::Live if self.session.tries() == 0 => Err("this is the run itself, which nobody \
+                changes by hand; `what-if` first"
+                .to_owned()),
+            _ => Err("this shows what was; `what-if` first".to_owned()),
+        }
+    }
+}

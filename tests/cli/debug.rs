@@ -1,0 +1,244 @@
+//! The debugger through the binary, with commands from a file or a pipe.
+
+use crate::support::{Bench, Ran};
+use serde_json::{Value, json};
+use std::io::Write;
+use std::process::Stdio;
+
+/// What cannot be taken back, a variable, an input, a checkpoint, an error and a branch.
+const PROGRAM: &str = "\
+cell \"bench_cell.toml\"
+error odd { severity warning }
+var count = 0
+sequence work {
+  set 2 high
+  count += 1
+  if input 1 { set 3 high }
+  set 2 low
+}
+sequence main {
+  call work
+  checkpoint half
+  irreversible \"the glue is on\" {
+    set 1 high
+  }
+  call work
+  throw odd
+  if count > 5 { wait 0.1 s }
+}
+";
+
+fn bench(name: &str) -> Bench {
+    let bench = Bench::new(&format!("debug_{name}"));
+    bench.write("p.obv", PROGRAM);
+    bench
+}
+
+/// Feed commands through a pipe.
+fn piped(bench: &Bench, more: &[&str], commands: &[&str]) -> Ran {
+    let arguments = [&["debug", "p.obv"], more].concat();
+    let mut command = bench.command(&arguments);
+    command.stdin(Stdio::piped()).stdout(Stdio::piped()).stderr(Stdio::piped());
+    let mut child = command.spawn().expect("the binary runs");
+    let text = commands.iter().flat_map(|line| [line, "\n"]).collect::<String>();
+    let mut stdin = child.stdin.take().expect("a pipe");
+    // It may have ended before it has read everything.
+    let _ = stdin.write_all(text.as_bytes());
+    drop(stdin);
+    Ran::from(child.wait_with_output().expect("its end"))
+}
+
+/// The answers to commands, each of which must be carried out.
+fn answers(bench: &Bench, commands: &[&str]) -> Vec<Value> {
+    let ran = piped(bench, &["--json"], commands);
+    assert_eq!(ran.code, 0, "{}\n{}", ran.stdout, ran.stderr);
+    let answers: Vec<Value> =
+        ran.json().into_iter().filter(|line| line["type"] == "answer").collect();
+    assert_eq!(answers.len(), commands.len(), "{}", ran.stdout);
+    answers
+}
+
+fn last(bench: &Bench, commands: &[&str]) -> Value {
+    answers(bench, commands).pop().expect("an answer")
+}
+
+fn line(answer: &Value) -> &Value {
+    &answer["position"]["line"]
+}
+
+#[test]
+fn steps_go_into_calls_and_next_goes_over_them() {
+    let bench = bench("walk");
+    let all = answers(&bench, &["step", "s", "finish", "reverse-next", "next", "n", "rs", "rf"]);
+    let lines: Vec<&Value> = all.iter().map(line).collect();
+    let expected = [11, 5, 12, 11, 12, 13, 12].map(|line| json!(line));
+    assert_eq!(lines[..7], expected.iter().collect::<Vec<_>>()[..]);
+    // Also what is taken back takes its moments.
+    let moment = |at: usize| all[at]["position"]["moment"].as_u64();
+    assert!(moment(7) > moment(6) && moment(6) > moment(5));
+}
+
+#[test]
+fn a_never_is_refused_live_and_crossed_rewound() {
+    let bench = bench("never");
+    let all = answers(
+        &bench,
+        &["b 16", "c", "why", "rc", "goto half", "p output 1", "goto end", "p output 1"],
+    );
+    assert_eq!(all[2]["never"]["reason"], "the glue is on");
+    assert_eq!(all[3]["halt"], "refused");
+    assert_eq!(all[3]["position"]["mode"], "live");
+    let text = all[3]["text"][0].as_str().expect("why");
+    assert!(text.contains("cannot go back past p.obv:13: the glue is on"), "{text}");
+    assert_eq!((&all[4]["position"]["mode"], line(&all[4])), (&json!("rewound"), &json!(12)));
+    assert_eq!((&all[5]["value"], &all[7]["value"]), (&json!(false), &json!(true)));
+    assert_eq!(all[7]["position"]["mode"], "live");
+}
+
+#[test]
+fn what_is_tried_leaves_the_recording_as_it_was() {
+    let bench = bench("what_if");
+    let all = answers(
+        &bench,
+        &[
+            "c",
+            "p count",
+            "goto half",
+            "what-if",
+            "set count = 41",
+            "input 1 high",
+            "c",
+            "p count",
+            "p output 3",
+            "rc",
+            "leave",
+            "p count",
+            "goto end",
+            "p count",
+            "p output 3",
+        ],
+    );
+    assert_eq!(all[6]["halt"], "finished");
+    assert_eq!((&all[7]["value"], &all[8]["value"]), (&json!(42), &json!(true)));
+    assert_eq!(all[9]["position"]["mode"], "what-if");
+    assert_eq!((&all[10]["position"]["mode"], &all[11]["value"]), (&json!("rewound"), &json!(1)));
+    assert_eq!((&all[13]["value"], &all[14]["value"]), (&json!(2), &json!(false)));
+    assert_eq!(all[12]["position"]["end"], all[0]["position"]["end"]);
+}
+
+#[test]
+fn the_last_change_is_found_again_and_again_and_a_jump_is_undone() {
+    let bench = bench("last");
+    let all = answers(&bench, &["c", "last output 2", "last output 2", "last output 2", "undo"]);
+    assert_eq!(all[1..4].iter().map(line).collect::<Vec<_>>(), [&json!(8), &json!(5), &json!(8)]);
+    assert_eq!(all[1]["change"]["before"], "true");
+    assert_eq!(all[4]["position"], all[2]["position"]);
+    // Before what is shown no error was raised; from the end it is found.
+    let ran = piped(&bench, &[], &["c", "goto start", "goto error"]);
+    assert!(ran.stdout.contains("no error was raised before this moment"), "{}", ran.stdout);
+    assert_eq!(line(&last(&bench, &["c", "goto error"])), 17);
+}
+
+#[test]
+fn breakpoints_stop_at_places_and_watches_at_changes() {
+    let bench = bench("stops");
+    let moved = last(&bench, &["break 1"]);
+    let text = moved["text"][0].as_str().expect("text");
+    assert!(text.starts_with("line 1 has no code; the next that has is"), "{text}");
+    let all = answers(
+        &bench,
+        &["b work if count == 1", "tbreak 12", "b error odd", "c", "c", "c", "info breakpoints"],
+    );
+    assert_eq!(all[3..6].iter().map(line).collect::<Vec<_>>(), [&json!(12), &json!(5), &json!(17)]);
+    let kept = all[6]["breakpoints"].as_array().expect("breakpoints");
+    assert_eq!(kept.len(), 2, "{kept:?}");
+    let all = answers(&bench, &["watch count", "c", "p count", "c", "p count", "rc", "delete all"]);
+    assert_eq!((&all[2]["value"], &all[4]["value"]), (&json!(1), &json!(2)));
+    assert_eq!(all[5]["halt"], "breakpoint");
+    let all =
+        answers(&bench, &["b work", "ignore 1 1", "c", "p count", "watch count reverse", "c"]);
+    assert_eq!(all[3]["value"], 1);
+    assert_eq!(all[5]["halt"], "finished");
+}
+
+#[test]
+fn what_there_is_can_be_looked_at() {
+    let bench = bench("look");
+    let all = answers(
+        &bench,
+        &["b 6", "c", "bt", "locals", "globals", "state", "history", "tape", "list", "x", "help"],
+    );
+    assert_eq!(all[2]["frames"][0]["function"], "work");
+    assert_eq!(all[4]["values"]["count"], 0);
+    assert_eq!(all[5]["values"]["output 2"], true);
+    assert_eq!(all[6]["history"][0]["text"], "set 2 high");
+    assert_eq!(all[7]["tape"]["bits"], 1);
+    let listed = all[8]["text"].as_array().expect("lines");
+    assert!(listed.iter().any(|line| line == ">   6  ⇄   count += 1"), "{listed:?}");
+    for answer in &all {
+        assert!(answer["text"].is_array(), "{answer}");
+    }
+}
+
+#[test]
+fn wrong_commands_are_answered_and_the_session_goes_on() {
+    let bench = bench("wrong");
+    for (command, why) in [
+        ("stp", "did you mean `step`?"),
+        ("re", "`re` may be `reverse-step` or"),
+        ("step zero", "no count"),
+        ("goto 1000000", "there is no moment 1000000"),
+        ("goto halv", "did you mean `half`?"),
+        ("b 999", "no code at line 999"),
+        ("b nobody.obv:3", "no file `nobody.obv`"),
+        ("b worrk", "`work`?"),
+        ("b error oddd", "`odd`?"),
+        ("b work if countt > 1", "`count`?"),
+        ("b work if count", "neither true nor false"),
+        ("p (1", "a `)` is missing, at column 3"),
+        ("set count = 3", "`what-if` first"),
+        ("leave", "nothing is being tried"),
+        ("undo", "no jump to undo"),
+        ("delete 7", "no breakpoint 7"),
+        ("last count", "did not change before"),
+        ("locals 9", "is no call"),
+        ("info nothing", "say breakpoints"),
+    ] {
+        let ran = piped(&bench, &[], &[command, "p count"]);
+        assert_eq!(ran.code, 1, "{command}\n{}", ran.stdout);
+        let told = ran.stdout.lines().find(|line| line.starts_with("not done: "));
+        assert!(told.is_some_and(|told| told.contains(why)), "{command}\n{}", ran.stdout);
+        assert!(ran.stdout.ends_with("count = 0\n"), "{command}\n{}", ran.stdout);
+    }
+}
+
+#[test]
+fn commands_come_from_a_file_too() {
+    let bench = bench("file");
+    bench.write("commands", "# a remark\n\nstep\nquit\nnonsense\n");
+    let ran = bench.ends(0, &["debug", "p.obv", "--commands", "commands"]);
+    assert!(ran.stdout.contains("(0 live) step\n"), "{}", ran.stdout);
+    assert!(!ran.stdout.contains('\u{1b}') && !ran.stdout.contains("nonsense"), "{}", ran.stdout);
+    bench.ends(2, &["debug", "p.obv", "--commands", "none"]);
+    bench.write("long", "p ".repeat(5000));
+    let ran = bench.ends(2, &["debug", "p.obv", "--commands", "long", "--json"]);
+    assert_eq!(ran.summary()["outcome"], "refused");
+    bench.write("binary", [0xff, 0xfe, b'\n']);
+    bench.ends(2, &["debug", "p.obv", "--commands", "binary"]);
+    bench.ends(2, &["debug", "none.obv"]);
+}
+
+#[test]
+fn who_follows_a_run_changes_nothing_of_what_is_recorded() {
+    // What is told of a wait asks for the level of the input, too.
+    let bench = Bench::new("debug_follow");
+    bench.write("commands", "c\ngoto start\nc\n");
+    let ran = bench.ends(0, &["debug", "feeder.obv", "--commands", "commands", "--json"]);
+    let answers: Vec<Value> =
+        ran.json().into_iter().filter(|line| line["type"] == "answer").collect();
+    assert_eq!(answers[2]["halt"], "end_of_recording");
+    let commanded = |line: &Value| line["type"] == "event";
+    let first = ran.json().iter().filter(|line| commanded(line)).count();
+    let alone = bench.ends(0, &["run", "feeder.obv", "--json"]).json();
+    assert_eq!(first, alone.iter().filter(|line| commanded(line)).count(), "once and not twice");
+}
