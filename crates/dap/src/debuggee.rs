@@ -12,6 +12,7 @@ use crate::points::{Group, Points, data, filters};
 use crate::server::{Ended, Loaded, Server};
 use crate::words::{self, Words};
 use crate::{places, shown};
+use obverse_bytecode::FunctionKind;
 use obverse_debugger::{
     Declined, Expression, Grain, Halt, Mode, Moment, Session, Subject, Value as Known, Walk,
 };
@@ -201,10 +202,28 @@ impl<'a, 's, 'p> Debuggee<'a, 's, 'p> {
         self.server.out.answer(request, Value::Null);
         self.server.out.event("thread", json!({ "reason": "started", "threadId": THREAD }));
         if self.launch.stop_on_entry && !self.launch.no_debug {
+            self.enter();
             self.stopped(Words::new("entry", "at the start of the program"), &[]);
             return Next::Stay;
         }
         Next::Go(Going::new(&self.session, Direction::Forward, Walk::Continue))
+    }
+
+    /// To the first statement that a person wrote into a sequence: what is before sets variables,
+    /// and commands nothing.
+    fn enter(&mut self) {
+        let module = self.session.module();
+        let is_before = |session: &Session<'_, Sim>| {
+            let function = module.function_at(session.machine().state().pc());
+            let function = function.and_then(|function| module.functions.get(function));
+            function.is_some_and(|function| function.kind == FunctionKind::Start)
+        };
+        let step = Walk::Step(Grain::Statement);
+        while is_before(&self.session) {
+            if self.session.go(Direction::Forward, step) != Halt::Done {
+                break;
+            }
+        }
     }
 
     /// Why the run cannot go anywhere, if it cannot.
@@ -236,7 +255,7 @@ impl<'a, 's, 'p> Debuggee<'a, 's, 'p> {
         let position = self.session.position();
         let is_at_end = position.mode == Mode::Rewound && position.moment == position.end;
         if is_at_end {
-            let words = words::halt(self.session.module(), &Halt::EndOfRecording);
+            let words = words::halt(&self.session, &Halt::EndOfRecording);
             self.server.out.refuse(request, &words.description);
             return Next::Stay;
         }
@@ -255,7 +274,7 @@ impl<'a, 's, 'p> Debuggee<'a, 's, 'p> {
         };
         match going.begin(&mut self.session) {
             Begun::Refused(halt) => {
-                let words = words::halt(self.session.module(), &halt);
+                let words = words::halt(&self.session, &halt);
                 let text = words.text.map(|text| format!("; {text}")).unwrap_or_default();
                 let why = format!("{}{text}", words.description);
                 self.server.out.refuse(request, &why);
@@ -369,8 +388,7 @@ impl<'a, 's, 'p> Debuggee<'a, 's, 'p> {
         if self.is_over {
             return;
         }
-        let module = self.session.module();
-        let mut words = words::halt(module, halt);
+        let mut words = words::halt(&self.session, halt);
         let mut ids = Vec::new();
         if let Halt::Hits(hits) = halt {
             ids = hits.iter().map(|hit| hit.id).collect();

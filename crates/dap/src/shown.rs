@@ -42,6 +42,9 @@ impl Debuggee<'_, '_, '_> {
             "column": 0,
             "instructionPointerReference": frame.pc.to_string(),
         });
+        if frame.name.starts_with('$') {
+            shown["presentationHint"] = json!("subtle");
+        }
         if let Some(place) = &frame.place {
             shown["line"] = json!(self.server.client.line(place.line));
             shown["column"] = json!(self.server.client.column(place.column));

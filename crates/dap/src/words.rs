@@ -30,11 +30,12 @@ impl Words {
 }
 
 /// Of a halt.
-pub(crate) fn halt(module: &Module, halt: &Halt) -> Words {
+pub(crate) fn halt(session: &Session<'_, Sim>, halt: &Halt) -> Words {
     match halt {
         Halt::Done => Words::new("step", "stepped"),
         Halt::Hits(_) => Words::new("breakpoint", "at a breakpoint"),
-        Halt::Stopped(stop) => stopped(module, stop),
+        Halt::Stopped(Stop::Refused(refusal)) => refused(session, refusal),
+        Halt::Stopped(stop) => stopped(session.module(), stop),
         Halt::Changed => Words::new("step", CHANGED),
         Halt::EndOfRecording => Words::new("step", END_OF_RECORDING),
         Halt::StartOfRecording => Words::new("entry", "at the start of what is recorded"),
@@ -74,18 +75,24 @@ fn stopped(module: &Module, stop: &Stop) -> Words {
             let back = if *direction == Direction::Reverse { "going back over " } else { "" };
             Words::wrong("fault", "fault", format!("{back}{}: {fault}", line(module, *pc)))
         }
-        Stop::Refused(refusal) => refused(module, refusal),
+        Stop::Refused(refusal) => Words::new("never", why_not(module, refusal)),
         Stop::Trap(trap) => Words::wrong("trap", "trap", trapped(module, trap)),
     }
 }
 
-fn refused(module: &Module, refusal: &Refusal) -> Words {
+/// With how to look at what was before.
+fn refused(session: &Session<'_, Sim>, refusal: &Refusal) -> Words {
+    let passed = session.why().never.map(|never| never.moment);
+    let text = passed.map(|moment| {
+        format!("`rewind {moment}` in the debug console shows what was, and commands nothing")
+    });
+    Words { text, ..Words::new("never", why_not(session.module(), refusal)) }
+}
+
+fn why_not(module: &Module, refusal: &Refusal) -> String {
     let own = refusal.reason.and_then(|reason| module.reasons.get(reason.index()));
     let why = own.map_or(refusal.why, String::as_str);
-    let description = format!("cannot go back past {}: {why}", line(module, refusal.pc));
-    let text = "`rewind` in the debug console shows what was before, and commands nothing";
-    let text = Some(text.to_owned());
-    Words { reason: "never", description, text, exception: None }
+    format!("cannot go back past {}: {why}", line(module, refusal.pc))
 }
 
 fn trapped(module: &Module, trap: &Trap) -> String {
