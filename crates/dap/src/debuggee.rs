@@ -19,6 +19,7 @@ use obverse_debugger::{
 use obverse_sim::Sim;
 use obverse_vm::Direction;
 use serde_json::{Value, json};
+use std::sync::atomic::Ordering;
 
 /// A program is one thread to clients, also where it forks: its branches are one history.
 const THREAD: u64 = 1;
@@ -315,6 +316,7 @@ impl<'a, 's, 'p> Debuggee<'a, 's, 'p> {
 
     /// Go on until something stops it, and serve the client meanwhile.
     fn drive(&mut self, going: Going) -> Option<Ended> {
+        let interrupter = self.session.interrupter();
         self.session.limit(SLICE);
         let ended = loop {
             let halt = going.go(&mut self.session);
@@ -323,11 +325,11 @@ impl<'a, 's, 'p> Debuggee<'a, 's, 'p> {
                 break Some(Ended::Gone);
             }
             match halt {
-                Halt::Limit => {}
-                Halt::Interrupted => match self.meanwhile() {
+                Halt::Limit if !interrupter.load(Ordering::Relaxed) => {}
+                Halt::Limit | Halt::Interrupted => match self.meanwhile() {
                     Ok(true) => {}
                     Ok(false) => {
-                        self.halted(&halt);
+                        self.halted(&Halt::Interrupted);
                         break None;
                     }
                     Err(ended) => break Some(ended),
