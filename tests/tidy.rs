@@ -13,8 +13,8 @@ const COMMAND_LINE: &str = "obverse";
 const WORKSHOP: [&str; 2] = ["testkit", "benches"];
 /// The two columns meet in bytecode and nowhere else.
 const LANGUAGE: [&str; 3] = ["syntax", "compiler", "lsp"];
-const MACHINE: [&str; 8] =
-    ["tape", "workcell", "sim", "vm", "recovery", "preflight", "debugger", "trials"];
+const MACHINE: [&str; 9] =
+    ["tape", "workcell", "sim", "vm", "recovery", "preflight", "debugger", "dap", "trials"];
 
 /// The widest line and the longest file of source text.
 const MAX_COLUMNS: usize = 100;

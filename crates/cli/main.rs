@@ -58,6 +58,8 @@ enum Command {
     Run(commands::run::RunArguments),
     /// Run a program, then take it back as far as it goes.
     Back(commands::back::Arguments),
+    /// Debug a program from an editor, in both directions, by the Debug Adapter Protocol.
+    Dap(commands::dap::Arguments),
     /// Show how far back each line of a program can go, and what stops it.
     Reach(commands::reach::Arguments),
     /// Walk through a run in both directions, and try what would have been.
@@ -94,7 +96,7 @@ impl Command {
             Self::Learn(arguments) => arguments.json,
             Self::Tape(arguments) => arguments.json,
             Self::Explain(arguments) => arguments.json,
-            Self::Check(_) | Self::Isa(_) | Self::Lsp(_) => false,
+            Self::Check(_) | Self::Dap(_) | Self::Isa(_) | Self::Lsp(_) => false,
         }
     }
 }
@@ -120,6 +122,7 @@ fn main() -> ExitCode {
         Command::Build(arguments) => commands::build::run(&arguments),
         Command::Run(arguments) => commands::run::run(&arguments),
         Command::Back(arguments) => commands::back::run(&arguments),
+        Command::Dap(arguments) => commands::dap::run(&arguments),
         Command::Reach(arguments) => commands::reach::run(&arguments),
         Command::Debug(arguments) => commands::debug::run(&arguments),
         Command::Dis(arguments) => commands::dis::run(&arguments),

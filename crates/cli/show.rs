@@ -131,6 +131,23 @@ fn to_stderr(bytes: &[u8]) {
     let _ = std::io::stderr().lock().write_all(bytes);
 }
 
+/// A line on standard error.
+pub(crate) fn note(text: &str) {
+    to_stderr(printable(&format!("{text}\n")).as_bytes());
+}
+
+/// The diagnostics of a program as text without the source, one each.
+pub(crate) fn diagnostic_lines(diagnosed: &Diagnosed) -> Vec<String> {
+    let texts = texts(diagnosed);
+    let files = Files::of(diagnosed, &texts);
+    let told = |diagnostic: &Diagnostic| {
+        let mut shown = Vec::new();
+        write_out(&files, diagnostic, &mut shown);
+        String::from_utf8_lossy(&shown).trim_end().to_owned()
+    };
+    diagnosed.diagnostics.iter().map(told).collect()
+}
+
 /// A diagnostic without the source: message, places, notes and help, a line each.
 fn write_out(files: &Files<'_>, diagnostic: &Diagnostic, shown: &mut Vec<u8>) {
     let kind = match diagnostic.severity {

@@ -3,6 +3,7 @@
 pub(crate) mod back;
 pub(crate) mod build;
 pub(crate) mod check;
+pub(crate) mod dap;
 pub(crate) mod debug;
 pub(crate) mod dis;
 mod dry;

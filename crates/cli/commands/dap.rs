@@ -1,0 +1,102 @@
+//! `obverse dap`: debug a program from an editor, by the Debug Adapter Protocol.
+//!
+//! Serves one client on standard input and output, or one after the other on a loopback port. What
+//! goes wrong beside the protocol is told on standard error.
+
+use super::Result;
+use crate::problem::{Problem, plain};
+use crate::{Outcome, load, show};
+use obverse_dap::{Ended, Launch, Loaded, serve};
+use std::io::{Read, Write};
+use std::net::{Ipv4Addr, TcpListener, TcpStream};
+use std::path::absolute;
+
+/// Why standard output is left alone.
+const AFTER_HELP: &str = "\
+Standard output carries the protocol and nothing else; what goes wrong beside it is told on
+standard error. `launch` understands:
+  program      the program: source, assembly text or module
+  cell         the workcell file, in place of the one that the program names
+  seed         what all chance in the workcell follows from (0)
+  stopOnEntry  stop before the first action (false)
+  stopAtEnd    stay at the end of the program, from where one can go back (true)";
+
+#[derive(clap::Args)]
+#[command(after_help = AFTER_HELP)]
+pub(crate) struct Arguments {
+    /// Listen on this port of the loopback address, in place of standard input; 0 is any that is
+    /// free, which is told.
+    #[arg(long, value_name = "N")]
+    port: Option<u16>,
+}
+
+pub(crate) fn run(arguments: &Arguments) -> Result {
+    match arguments.port {
+        None => Ok(outcome(&one(std::io::stdin(), &mut std::io::stdout()))),
+        Some(port) => listen(port),
+    }
+}
+
+fn outcome(ended: &Ended) -> Outcome {
+    match ended {
+        Ended::Done => Outcome::Done,
+        Ended::Gone => Outcome::EndedOtherwise,
+    }
+}
+
+/// Serve clients, one after the other, for ever.
+fn listen(port: u16) -> Result {
+    let cannot = |error: std::io::Error| {
+        Problem::new(format!("cannot listen on port {port}: {}", plain(&error)))
+    };
+    let listener = TcpListener::bind((Ipv4Addr::LOCALHOST, port)).map_err(cannot)?;
+    let port = listener.local_addr().map_err(cannot)?.port();
+    show::note(&format!("listening on port {port}"));
+    loop {
+        let served = listener.accept().and_then(|(stream, _)| connected(stream));
+        if let Err(error) = served {
+            show::note(&format!("a client could not be served: {}", plain(&error)));
+        }
+    }
+}
+
+fn connected(stream: TcpStream) -> std::io::Result<()> {
+    stream.set_nodelay(true)?;
+    let mut output = stream.try_clone()?;
+    one(stream, &mut output);
+    // Who reads of it is woken so.
+    match output.shutdown(std::net::Shutdown::Both) {
+        Err(error) if error.kind() != std::io::ErrorKind::NotConnected => Err(error),
+        _ => Ok(()),
+    }
+}
+
+fn one(input: impl Read + Send + 'static, output: &mut dyn Write) -> Ended {
+    serve(input, output, &mut |launch| loaded(launch), &mut |text| show::note(text))
+}
+
+/// The program and the workcell of a launch.
+fn loaded(launch: &Launch) -> std::result::Result<Loaded, String> {
+    let told = |problem: Problem| words(&problem);
+    let program = load::quietly(&launch.program).map_err(told)?;
+    let named = launch.cell.as_deref();
+    let (cell, file) = load::workcell(&program, named, launch.seed).map_err(told)?;
+    load::machine(&program, &cell, &file).map_err(told)?;
+    let module = program.verified.module();
+    let path = |name: &str| {
+        let path = program.path_of(name);
+        path.is_file().then(|| absolute(&path).unwrap_or(path))
+    };
+    let paths = module.sources.iter().map(|file| path(&file.name)).collect();
+    let notes = program.source.iter().flat_map(show::diagnostic_lines).collect();
+    let place = file.name;
+    let mut notes: Vec<String> = notes;
+    notes.push(format!("{} in {place}, seed {}", launch.program.display(), launch.seed));
+    Ok(Loaded { program: program.verified, cell, paths, notes })
+}
+
+fn words(problem: &Problem) -> String {
+    let of_source = problem.source.iter().flat_map(show::diagnostic_lines);
+    let messages = problem.messages.iter().map(ToString::to_string);
+    of_source.chain(messages).collect::<Vec<_>>().join("\n")
+}

@@ -1,0 +1,29 @@
+//! The debug adapter: a session of the debugger, spoken to by editors in the Debug Adapter Protocol.
+//!
+//! Bytes come in and go out; what is to be said to people beside that, and how a program is loaded,
+//! is the caller's. A client is not trusted: whatever it sends, it is answered or told why not, and
+//! the session stays as it is.
+//!
+//! Reading order: [`frame`], one message among bytes; [`message`], what is asked; `inbox` and
+//! `outbox`, how messages come and go while a run is under way; [`server`], a connection up to
+//! where a program is loaded; `debuggee`, the session over it, with `motion`, how it is driven,
+//! `points`, its breakpoints, `places`, source files and instructions, `shown`, what is looked at,
+//! `console`, what can be typed, and `words`, what stops are called.
+//! It knows no files, and no source language.
+
+pub mod frame;
+pub mod message;
+pub mod server;
+
+mod console;
+mod debuggee;
+mod inbox;
+mod motion;
+mod outbox;
+mod places;
+mod points;
+mod shown;
+mod words;
+
+pub use message::Launch;
+pub use server::{Ended, Loaded, serve};

@@ -1,0 +1,239 @@
+//! What a client asks: the requests that are understood, with what they are given.
+//!
+//! Whatever else a client sends along is passed over, as the protocol wants it.
+
+use serde::Deserialize;
+use serde::de::DeserializeOwned;
+use serde_json::Value;
+use std::path::PathBuf;
+
+/// A request.
+#[derive(Clone, Debug, Deserialize)]
+pub struct Request {
+    /// Its number.
+    pub seq: i64,
+    /// What is asked for.
+    pub command: String,
+    /// What it is given.
+    #[serde(default)]
+    pub arguments: Value,
+}
+
+impl Request {
+    /// What it is given, as what it must be.
+    ///
+    /// # Errors
+    /// What is wrong with it.
+    pub fn given<T: DeserializeOwned>(&self) -> Result<T, String> {
+        let given = match &self.arguments {
+            Value::Null => Value::Object(serde_json::Map::new()),
+            given => given.clone(),
+        };
+        serde_json::from_value(given)
+            .map_err(|error| format!("`{}` is given something else: {error}", self.command))
+    }
+}
+
+/// A message that is no request.
+#[derive(Deserialize)]
+struct Kind {
+    #[serde(rename = "type")]
+    kind: String,
+}
+
+/// The request that bytes are.
+///
+/// # Errors
+/// Why they are none.
+pub fn request(bytes: &[u8]) -> Result<Request, String> {
+    let kind: Kind = serde_json::from_slice(bytes)
+        .map_err(|error| format!("this is no message of the protocol: {error}"))?;
+    if kind.kind != "request" {
+        return Err(format!("a client sends requests, and this is of type `{}`", kind.kind));
+    }
+    serde_json::from_slice(bytes).map_err(|error| format!("this is no request: {error}"))
+}
+
+/// What `initialize` is given.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(rename_all = "camelCase", default)]
+pub(crate) struct Client {
+    #[serde(rename = "linesStartAt1")]
+    pub(crate) lines_from_1: bool,
+    #[serde(rename = "columnsStartAt1")]
+    pub(crate) columns_from_1: bool,
+    pub(crate) supports_invalidated_event: bool,
+}
+
+impl Default for Client {
+    fn default() -> Self {
+        Self { lines_from_1: true, columns_from_1: true, supports_invalidated_event: false }
+    }
+}
+
+impl Client {
+    /// A line from 1, as the client counts.
+    pub(crate) fn line(&self, line: usize) -> usize {
+        line - usize::from(!self.lines_from_1 && line > 0)
+    }
+
+    /// A column from 1, as the client counts.
+    pub(crate) fn column(&self, column: usize) -> usize {
+        column - usize::from(!self.columns_from_1 && column > 0)
+    }
+
+    /// A line of the client's, from 1.
+    pub(crate) fn line_of(&self, line: usize) -> usize {
+        line.saturating_add(usize::from(!self.lines_from_1))
+    }
+}
+
+/// What `launch` is given.
+#[derive(Clone, Debug, PartialEq, Deserialize)]
+#[serde(rename_all = "camelCase")]
+pub struct Launch {
+    /// The program.
+    pub program: PathBuf,
+    /// The workcell file, in place of the one that the program names.
+    #[serde(default, alias = "workcell")]
+    pub cell: Option<PathBuf>,
+    /// What all chance in the workcell follows from.
+    #[serde(default)]
+    pub seed: u64,
+    /// Whether to stop before the first action.
+    #[serde(default)]
+    pub stop_on_entry: bool,
+    /// Whether to stay at the end of the program, from where one can go back.
+    #[serde(default = "yes")]
+    pub stop_at_end: bool,
+    /// Whether to run without any stop.
+    #[serde(default)]
+    pub no_debug: bool,
+}
+
+fn yes() -> bool {
+    true
+}
+
+/// A source as a client names it.
+#[derive(Clone, Debug, Deserialize, Default)]
+#[serde(rename_all = "camelCase", default)]
+pub(crate) struct Source {
+    pub(crate) name: Option<String>,
+    pub(crate) path: Option<String>,
+    pub(crate) source_reference: Option<u64>,
+}
+
+#[derive(Deserialize)]
+pub(crate) struct SetBreakpoints {
+    pub(crate) source: Source,
+    #[serde(default)]
+    pub(crate) breakpoints: Vec<Value>,
+}
+
+/// What breakpoints of any kind are given without a source.
+#[derive(Deserialize)]
+pub(crate) struct SetPoints {
+    #[serde(default)]
+    pub(crate) breakpoints: Vec<Value>,
+}
+
+/// A breakpoint of any kind; which parts must be there is for its kind to say.
+#[derive(Clone, Debug, Deserialize, Default)]
+#[serde(rename_all = "camelCase", default)]
+pub(crate) struct Asked {
+    pub(crate) line: Option<usize>,
+    pub(crate) name: Option<String>,
+    pub(crate) instruction_reference: Option<String>,
+    pub(crate) offset: i64,
+    pub(crate) data_id: Option<String>,
+    pub(crate) condition: Option<String>,
+    pub(crate) hit_condition: Option<String>,
+    pub(crate) log_message: Option<String>,
+}
+
+#[derive(Deserialize)]
+pub(crate) struct SetExceptions {
+    #[serde(default)]
+    pub(crate) filters: Vec<String>,
+}
+
+#[derive(Deserialize)]
+#[serde(rename_all = "camelCase")]
+pub(crate) struct DataInfo {
+    pub(crate) name: String,
+    pub(crate) frame_id: Option<usize>,
+    pub(crate) variables_reference: Option<u64>,
+}
+
+#[derive(Deserialize)]
+#[serde(rename_all = "camelCase")]
+pub(crate) struct StackTrace {
+    #[serde(default)]
+    pub(crate) start_frame: Option<usize>,
+    pub(crate) levels: Option<usize>,
+}
+
+#[derive(Deserialize)]
+#[serde(rename_all = "camelCase")]
+pub(crate) struct FrameId {
+    pub(crate) frame_id: usize,
+}
+
+#[derive(Deserialize)]
+#[serde(rename_all = "camelCase")]
+pub(crate) struct Variables {
+    pub(crate) variables_reference: u64,
+}
+
+#[derive(Deserialize)]
+#[serde(rename_all = "camelCase")]
+pub(crate) struct SetVariable {
+    pub(crate) variables_reference: u64,
+    pub(crate) name: String,
+    pub(crate) value: String,
+}
+
+#[derive(Deserialize)]
+#[serde(rename_all = "camelCase")]
+pub(crate) struct Evaluate {
+    pub(crate) expression: String,
+    pub(crate) frame_id: Option<usize>,
+    pub(crate) context: Option<String>,
+}
+
+#[derive(Deserialize)]
+pub(crate) struct Step {
+    pub(crate) granularity: Option<String>,
+}
+
+#[derive(Deserialize)]
+pub(crate) struct GotoTargets {
+    pub(crate) source: Source,
+    pub(crate) line: usize,
+}
+
+#[derive(Deserialize)]
+#[serde(rename_all = "camelCase")]
+pub(crate) struct Goto {
+    pub(crate) target_id: usize,
+}
+
+#[derive(Deserialize)]
+#[serde(rename_all = "camelCase")]
+pub(crate) struct Disassemble {
+    pub(crate) memory_reference: String,
+    #[serde(default)]
+    pub(crate) offset: i64,
+    #[serde(default)]
+    pub(crate) instruction_offset: i64,
+    pub(crate) instruction_count: usize,
+}
+
+#[derive(Deserialize)]
+#[serde(rename_all = "camelCase")]
+pub(crate) struct SourceText {
+    pub(crate) source: Option<Source>,
+    #[serde(default)]
+    pub(crate) source_reference: u64,
+}

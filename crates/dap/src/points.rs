@@ -1,0 +1,379 @@
+//! The breakpoints that a client has set, group by group: those of a file, of names, of
+//! instructions, of data, of errors.
+//!
+//! A client always sends a whole group. What it sends again as it was stays, with how often it has
+//! been come to.
+
+use crate::message::{Asked, Client};
+use crate::places;
+use crate::server::Loaded;
+use obverse_bytecode::Module;
+use obverse_debugger::{Breakpoint, Expression, Halt, Piece, Places, Session, Subject};
+use obverse_isa::ErrorId;
+use obverse_sim::Sim;
+use obverse_vm::{Direction, Stop};
+use serde_json::{Value, json};
+
+/// The most breakpoints of a group.
+const MAX_POINTS: usize = 1000;
+/// The filter of errors that are due.
+const DUE: &str = "due";
+/// The filter of errors where they are raised.
+const RAISED: &str = "raised";
+/// What the filter of one error begins with.
+const ERROR: &str = "error ";
+
+/// What a client sets at once.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(crate) enum Group {
+    /// Lines of a file.
+    Lines(String),
+    Functions,
+    Instructions,
+    Data,
+    Errors,
+}
+
+impl Group {
+    /// Why a run stops at one.
+    fn reason(&self) -> &'static str {
+        match self {
+            Self::Lines(_) => "breakpoint",
+            Self::Functions => "function breakpoint",
+            Self::Instructions => "instruction breakpoint",
+            Self::Data => "data breakpoint",
+            Self::Errors => "exception",
+        }
+    }
+}
+
+struct Point {
+    group: Group,
+    asked: Value,
+    /// None of one that could not be set.
+    id: Option<u32>,
+    answer: Value,
+}
+
+/// The breakpoints that a client has set.
+pub(crate) struct Points {
+    points: Vec<Point>,
+    filters: Vec<String>,
+}
+
+/// A breakpoint, and what a client is told of it.
+type Made = (Breakpoint, Value);
+
+impl Points {
+    /// None yet; of errors, those that are due.
+    pub(crate) fn new() -> Self {
+        Self { points: Vec::new(), filters: vec![DUE.to_owned()] }
+    }
+
+    /// Set a group; what is in its place is told of each.
+    pub(crate) fn set(
+        &mut self,
+        session: &mut Session<'_, Sim>,
+        (loaded, client): (&Loaded, &Client),
+        group: &Group,
+        asked: Vec<Value>,
+    ) -> Result<Value, String> {
+        if asked.len() > MAX_POINTS {
+            return Err(format!("no more than {MAX_POINTS} breakpoints are set at once"));
+        }
+        let is_other = |point: &mut Point| point.group == *group;
+        let mut before: Vec<Point> = self.points.extract_if(.., is_other).collect();
+        let mut answers = Vec::new();
+        for asked in asked {
+            let kept = before.iter().position(|point| point.asked == asked);
+            let point = match kept {
+                Some(kept) => before.swap_remove(kept),
+                None => make(session, (loaded, client), group, asked),
+            };
+            answers.push(point.answer.clone());
+            self.points.push(point);
+        }
+        drop_all(session, &before);
+        Ok(json!({ "breakpoints": answers }))
+    }
+
+    /// Set which errors stop a run.
+    pub(crate) fn set_errors(
+        &mut self,
+        session: &mut Session<'_, Sim>,
+        filters: Vec<String>,
+    ) -> Value {
+        let is_error = |point: &mut Point| point.group == Group::Errors;
+        let before: Vec<Point> = self.points.extract_if(.., is_error).collect();
+        drop_all(session, &before);
+        let module = session.module();
+        let mut answers = Vec::new();
+        for filter in &filters {
+            let of: Vec<usize> = match filter.strip_prefix(ERROR) {
+                _ if filter == RAISED => (0..module.errors.len()).collect(),
+                Some(name) => errors_of(module, name),
+                None => Vec::new(),
+            };
+            let is_known = !of.is_empty() || filter == DUE || filter == RAISED;
+            answers.push(match is_known {
+                true => json!({ "verified": true }),
+                false => json!({
+                    "verified": false,
+                    "message": format!("the program declares no such error: `{filter}`"),
+                }),
+            });
+            for index in of {
+                let expression = Expression::of(module, Subject::Error(ErrorId(index as u16)));
+                let mut breakpoint = Breakpoint::on_change(expression);
+                // Going back over where it was raised is no news.
+                breakpoint.direction = Some(Direction::Forward);
+                breakpoint.condition = {
+                    let name = format!("error {}", module.errors[index].name);
+                    Expression::condition(module, 0, &name).ok()
+                };
+                let id = Some(session.add_breakpoint(breakpoint));
+                let (group, asked) = (Group::Errors, json!(module.errors[index].name));
+                self.points.push(Point { group, asked, id, answer: Value::Null });
+            }
+        }
+        self.filters = filters;
+        json!({ "breakpoints": answers })
+    }
+
+    /// Whether a run is to go on from a halt as if nothing had been: an error that is due, where
+    /// the client wants to hear of none.
+    pub(crate) fn passes(&self, module: &Module, halt: &Halt) -> bool {
+        let Halt::Stopped(Stop::Due { error, .. }) = halt else { return false };
+        let name = module.errors.get(error.index()).map_or("", |error| error.name.as_str());
+        !self.filters.iter().any(|filter| {
+            filter == DUE || filter == RAISED || filter.strip_prefix(ERROR) == Some(name)
+        })
+    }
+
+    /// Why a run stops at these, and the error if it is for one.
+    pub(crate) fn reason(&self, ids: &[u32]) -> (&'static str, Option<String>) {
+        let of = |point: &&Point| point.id.is_some_and(|id| ids.contains(&id));
+        let mut found: Vec<&Point> = self.points.iter().filter(of).collect();
+        found.sort_by_key(|point| point.group != Group::Errors);
+        let first = found.first();
+        let error = first.filter(|point| point.group == Group::Errors);
+        let error = error.and_then(|point| point.asked.as_str()).map(str::to_owned);
+        (first.map_or("breakpoint", |point| point.group.reason()), error)
+    }
+
+    /// Those of some that a client has numbers of.
+    pub(crate) fn told(&self, ids: &[u32]) -> Vec<u32> {
+        let is_told = |id: &&u32| {
+            let mut points = self.points.iter();
+            points.any(|point| point.id == Some(**id) && point.group != Group::Errors)
+        };
+        ids.iter().filter(is_told).copied().collect()
+    }
+}
+
+fn drop_all(session: &mut Session<'_, Sim>, points: &[Point]) {
+    for id in points.iter().filter_map(|point| point.id) {
+        // It is there, and were it not, nothing would be left to drop.
+        let _ = session.drop_breakpoint(id);
+    }
+}
+
+fn errors_of(module: &Module, name: &str) -> Vec<usize> {
+    module.errors.iter().position(|error| error.name == name).into_iter().collect()
+}
+
+/// What a client can be asked about errors: those of a program, once there is one.
+pub(crate) fn filters(module: Option<&Module>) -> Value {
+    let filter = |filter: &str, label: &str, description: &str, default: bool| {
+        json!({
+            "filter": filter, "label": label, "description": description, "default": default,
+        })
+    };
+    let mut all = vec![
+        filter(DUE, "Errors that are due", "Stop where the program responds to an error.", true),
+        filter(RAISED, "Errors when raised", "Stop behind whatever raises an error.", false),
+    ];
+    for error in module.map(|module| &module.errors).into_iter().flatten() {
+        let description = format!("Stop where `{}` is raised, and where it is due.", error.name);
+        let label = format!("Error {}", error.name);
+        all.push(filter(&format!("{ERROR}{}", error.name), &label, &description, false));
+    }
+    json!(all)
+}
+
+fn make(
+    session: &mut Session<'_, Sim>,
+    (loaded, client): (&Loaded, &Client),
+    group: &Group,
+    asked: Value,
+) -> Point {
+    let module = session.module();
+    let given = serde_json::from_value::<Asked>(asked.clone())
+        .map_err(|error| format!("this is no breakpoint: {error}"));
+    let made = given.and_then(|given| match group {
+        Group::Lines(file) => of_line(module, (loaded, client), file, &given),
+        Group::Functions => of_function(module, &given),
+        Group::Instructions => of_instruction(module, &given),
+        Group::Data | Group::Errors => of_data(module, &given),
+    });
+    let group = group.clone();
+    match made {
+        Ok((breakpoint, mut answer)) => {
+            let id = session.add_breakpoint(breakpoint);
+            answer["id"] = json!(id);
+            answer["verified"] = json!(true);
+            Point { group, asked, id: Some(id), answer }
+        }
+        Err(why) => {
+            let answer = json!({ "verified": false, "message": why, "reason": "failed" });
+            Point { group, asked, id: None, answer }
+        }
+    }
+}
+
+fn of_line(
+    module: &Module,
+    (loaded, client): (&Loaded, &Client),
+    file: &str,
+    given: &Asked,
+) -> Result<Made, String> {
+    let asked = given.line.ok_or("it must say its line")?;
+    let line = client.line_of(asked);
+    let places = Places::of_line(module, Some(file), line).map_err(|error| error.to_string())?;
+    let found = places.line.unwrap_or(line);
+    let mut answer = json!({ "line": client.line(found), "source": places::source(loaded, file) });
+    if found != line {
+        answer["message"] = json!(format!("there is no code at line {line}; the next is {found}"));
+    }
+    Ok((at(module, places, given)?, answer))
+}
+
+fn of_function(module: &Module, given: &Asked) -> Result<Made, String> {
+    let name = given.name.as_deref().ok_or("it must say a name")?;
+    let places = Places::of_name(module, name.trim()).map_err(|error| error.to_string())?;
+    Ok((at(module, places, given)?, json!({})))
+}
+
+fn of_instruction(module: &Module, given: &Asked) -> Result<Made, String> {
+    let reference = given.instruction_reference.as_deref().ok_or("it must say an instruction")?;
+    let asked = places::address(reference, given.offset)?;
+    let pc = u32::try_from(asked).map_err(|_| format!("there is no instruction {asked}"))?;
+    let places = Places::of_instruction(module, pc).map_err(|error| error.to_string())?;
+    let found = places.pcs.first().copied().unwrap_or(pc);
+    let mut answer = json!({ "instructionReference": found.to_string() });
+    if found != pc {
+        let why = format!("no run can stop before instruction {pc}; the next is {found}");
+        answer["message"] = json!(why);
+    }
+    Ok((at(module, places, given)?, answer))
+}
+
+fn at(module: &Module, places: Places, given: &Asked) -> Result<Breakpoint, String> {
+    let first = places.pcs.first().and_then(|pc| module.function_at(*pc));
+    qualified(module, first.unwrap_or(0), Breakpoint::at(places), given)
+}
+
+fn of_data(module: &Module, given: &Asked) -> Result<Made, String> {
+    let id = given.data_id.as_deref().ok_or("it must say what is watched")?;
+    let (function, text) = id.split_once(':').unwrap_or(("0", id));
+    let function = function.parse().map_err(|_| format!("`{id}` is nothing that is watched"))?;
+    let expression =
+        Expression::parse(module, function, text).map_err(|error| error.to_string())?;
+    let breakpoint = Breakpoint::on_change(expression);
+    Ok((qualified(module, function, breakpoint, given)?, json!({})))
+}
+
+/// What is watched, by which a breakpoint can be set on it, and what a person calls it.
+pub(crate) fn data(module: &Module, function: usize, text: &str) -> Value {
+    match Expression::parse(module, function, text) {
+        Ok(expression) if !expression.subjects().is_empty() => json!({
+            "dataId": format!("{function}:{text}"),
+            "description": text,
+            "accessTypes": ["write"],
+            "canPersist": true,
+        }),
+        Ok(_) => json!({ "dataId": null, "description": format!("`{text}` never changes") }),
+        Err(error) => json!({ "dataId": null, "description": error.to_string() }),
+    }
+}
+
+/// A breakpoint with when it stops, and what it tells in place of a stop.
+fn qualified(
+    module: &Module,
+    function: usize,
+    breakpoint: Breakpoint,
+    given: &Asked,
+) -> Result<Breakpoint, String> {
+    let text = |text: &Option<String>| text.clone().filter(|text| !text.trim().is_empty());
+    let condition = text(&given.condition).map(|text| {
+        let condition = Expression::condition(module, function, &text);
+        condition.map_err(|error| format!("condition: {error}"))
+    });
+    let ignored = text(&given.hit_condition).map(|text| ignored(&text));
+    let log = text(&given.log_message).map(|text| pieces(module, function, &text));
+    Ok(Breakpoint {
+        condition: condition.transpose()?,
+        ignored: ignored.transpose()?.unwrap_or(0),
+        log: log.transpose()?,
+        ..breakpoint
+    })
+}
+
+/// How often a breakpoint is passed: `3` and `>= 3` stop from the third time on, `> 3` behind it.
+fn ignored(text: &str) -> Result<u64, String> {
+    let text = text.trim();
+    let (number, is_more) = match (text.strip_prefix(">="), text.strip_prefix('>')) {
+        (Some(number), _) => (number, false),
+        (None, Some(number)) => (number, true),
+        (None, None) => (text, false),
+    };
+    let wrong = || format!("`{text}` is no hit count: write `3`, `>= 3` or `> 3`");
+    let number: u64 = number.trim().parse().map_err(|_| wrong())?;
+    if is_more { Ok(number) } else { number.checked_sub(1).ok_or_else(wrong) }
+}
+
+/// What a log point tells: text, and between braces what is worked out.
+fn pieces(module: &Module, function: usize, text: &str) -> Result<Vec<Piece>, String> {
+    let mut pieces = Vec::new();
+    let mut rest = text;
+    while let Some((before, behind)) = rest.split_once('{') {
+        let (inner, after) = behind.split_once('}').ok_or("log message: a `}` is missing")?;
+        let value = Expression::parse(module, function, inner);
+        let value = value.map_err(|error| format!("log message: `{inner}`: {error}"))?;
+        pieces.extend((!before.is_empty()).then(|| Piece::Text(before.to_owned())));
+        pieces.push(Piece::Value(value));
+        rest = after;
+    }
+    pieces.extend((!rest.is_empty()).then(|| Piece::Text(rest.to_owned())));
+    Ok(pieces)
+}
+
+#[cfg(test)]
+mod tests {
+    //! What is written in the fields of a breakpoint.
+
+    use super::*;
+
+    #[test]
+    fn hit_counts_say_how_often_it_is_passed() {
+        for (text, expected) in [("1", 0), (" 3 ", 2), (">= 3", 2), (">3", 3), ("> 0", 0)] {
+            assert_eq!(ignored(text), Ok(expected), "{text}");
+        }
+        for text in ["0", "-1", "x", "< 3", "", "== 3"] {
+            assert!(ignored(text).is_err(), "{text}");
+        }
+    }
+
+    #[test]
+    fn log_messages_are_text_and_values() {
+        let module = Module::default();
+        let pieces = pieces(&module, 0, "force {force} N").expect("it is well formed");
+        assert!(matches!(
+            &pieces[..],
+            [Piece::Text(before), Piece::Value(_), Piece::Text(behind)]
+                if before == "force " && behind == " N"
+        ));
+        assert!(super::pieces(&module, 0, "force {force").is_err());
+        assert!(super::pieces(&module, 0, "{no_such_thing}").is_err());
+    }
+}

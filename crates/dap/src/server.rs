@@ -1,0 +1,184 @@
+//! A connection: from the first request to where a program is loaded, and then the session over it.
+
+use crate::debuggee::Debuggee;
+use crate::frame::Frame;
+use crate::inbox::Inbox;
+use crate::message::{Client, Launch, Request, request};
+use crate::outbox::Outbox;
+use obverse_bytecode::Verified;
+use obverse_sim::Sim;
+use serde_json::{Value, json};
+use std::io::{Read, Write};
+use std::path::PathBuf;
+
+/// A program that may be run, and its workcell.
+pub struct Loaded {
+    /// What runs.
+    pub program: Verified,
+    /// Where it runs.
+    pub cell: Sim,
+    /// The path of each source file of the module; none of one that is in no folder.
+    pub paths: Vec<Option<PathBuf>>,
+    /// What the user is to be told about it, warnings for one.
+    pub notes: Vec<String>,
+}
+
+/// How a connection ended.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Ended {
+    /// The client ended it.
+    Done,
+    /// It went away without a word, or what it sent ended in the middle.
+    Gone,
+}
+
+/// Serve one client until it is done. `load` loads what it wants to debug, `log` is told what is
+/// wrong with what it sends, and nobody else would learn.
+pub fn serve(
+    input: impl Read + Send + 'static,
+    output: &mut dyn Write,
+    load: &mut dyn FnMut(&Launch) -> Result<Loaded, String>,
+    log: &mut dyn FnMut(&str),
+) -> Ended {
+    let inbox = Inbox::of(input);
+    let mut server = Server { inbox, out: Outbox::to(output), log, client: Client::default() };
+    let (loaded, launch, request) = match server.until_launch(load) {
+        Ok(launched) => launched,
+        Err(ended) => return ended,
+    };
+    match Debuggee::begin(&mut server, &loaded, launch) {
+        Ok(mut debuggee) => debuggee.serve(&request),
+        Err(why) => {
+            server.out.refuse(&request, &why);
+            server.out.event("terminated", json!({}));
+            server.until_gone()
+        }
+    }
+}
+
+/// A connection.
+pub(crate) struct Server<'s> {
+    pub(crate) inbox: Inbox,
+    pub(crate) out: Outbox<'s>,
+    pub(crate) log: &'s mut dyn FnMut(&str),
+    pub(crate) client: Client,
+}
+
+impl Server<'_> {
+    /// The request that something that came in is; none if it is none, which is told.
+    pub(crate) fn request(&mut self, frame: Frame) -> Result<Option<Request>, Ended> {
+        let why = match frame {
+            Frame::Message(bytes) => match request(&bytes) {
+                Ok(request) => return Ok(Some(request)),
+                Err(why) => why,
+            },
+            Frame::Wrong(why) => why,
+            Frame::End(why) => {
+                let why = why.unwrap_or_else(|| "the client went away".to_owned());
+                (self.log)(&why);
+                return Err(Ended::Gone);
+            }
+        };
+        (self.log)(&why);
+        self.out.tell("stderr", &why);
+        Ok(None)
+    }
+
+    /// The next request.
+    pub(crate) fn next(&mut self) -> Result<Request, Ended> {
+        loop {
+            if self.out.is_gone {
+                (self.log)("the client reads no more");
+                return Err(Ended::Gone);
+            }
+            let frame = self.inbox.next();
+            if let Some(request) = self.request(frame)? {
+                return Ok(request);
+            }
+        }
+    }
+
+    fn until_launch(
+        &mut self,
+        load: &mut dyn FnMut(&Launch) -> Result<Loaded, String>,
+    ) -> Result<(Loaded, Launch, Request), Ended> {
+        let mut is_initialized = false;
+        loop {
+            let request = self.next()?;
+            match request.command.as_str() {
+                "initialize" if is_initialized => {
+                    self.out.refuse(&request, "it is initialized already");
+                }
+                "initialize" => match request.given() {
+                    Ok(client) => {
+                        self.client = client;
+                        is_initialized = true;
+                        self.out.answer(&request, capabilities());
+                    }
+                    Err(why) => self.out.refuse(&request, &why),
+                },
+                "disconnect" | "terminate" => {
+                    self.out.answer(&request, Value::Null);
+                    return Err(Ended::Done);
+                }
+                _ if !is_initialized => {
+                    self.out.refuse(&request, "the first request must be `initialize`");
+                }
+                "launch" => match request.given::<Launch>().and_then(|launch| {
+                    let loaded = load(&launch)?;
+                    Ok((loaded, launch))
+                }) {
+                    Ok((loaded, launch)) => return Ok((loaded, launch, request)),
+                    Err(why) => {
+                        self.out.tell("stderr", &why);
+                        self.out.refuse(&request, &why);
+                    }
+                },
+                "attach" => self.out.refuse(&request, NO_ATTACH),
+                _ => self.out.refuse(&request, "no program is loaded: `launch` one first"),
+            }
+        }
+    }
+
+    /// Nothing can be done but to end.
+    fn until_gone(&mut self) -> Ended {
+        loop {
+            match self.next() {
+                Ok(request) if matches!(request.command.as_str(), "disconnect" | "terminate") => {
+                    self.out.answer(&request, Value::Null);
+                    return Ended::Done;
+                }
+                Ok(request) => self.out.refuse(&request, "there is no program to debug"),
+                Err(ended) => return ended,
+            }
+        }
+    }
+}
+
+const NO_ATTACH: &str = "a tape holds what going back needs, and not what the workcell answered, so \
+                         that its run cannot be shown again: `launch` the program with its seed";
+
+/// What is there, and nothing else.
+fn capabilities() -> Value {
+    json!({
+        "supportsConfigurationDoneRequest": true,
+        "supportsFunctionBreakpoints": true,
+        "supportsConditionalBreakpoints": true,
+        "supportsHitConditionalBreakpoints": true,
+        "supportsEvaluateForHovers": true,
+        "supportsStepBack": true,
+        "supportsSetVariable": true,
+        "supportsRestartFrame": true,
+        "supportsGotoTargetsRequest": true,
+        "supportsExceptionInfoRequest": true,
+        "supportsDelayedStackTraceLoading": true,
+        "supportsLoadedSourcesRequest": true,
+        "supportsLogPoints": true,
+        "supportsTerminateRequest": true,
+        "supportsDataBreakpoints": true,
+        "supportsDisassembleRequest": true,
+        "supportsSteppingGranularity": true,
+        "supportsInstructionBreakpoints": true,
+        "exceptionBreakpointFilters": crate::points::filters(None),
+    })
+}

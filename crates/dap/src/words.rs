@@ -1,0 +1,121 @@
+//! What stops are called, to clients and to people.
+
+use obverse_bytecode::Module;
+use obverse_debugger::{Halt, Mode, Session};
+use obverse_sim::Sim;
+use obverse_vm::{Direction, Refusal, Stop, Trap, TrapKind};
+
+/// Why a session stopped.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(crate) struct Words {
+    /// The protocol's word, or one of ours.
+    pub(crate) reason: &'static str,
+    /// The same in few words.
+    pub(crate) description: String,
+    /// What else there is to say about it.
+    pub(crate) text: Option<String>,
+    /// What went wrong, if something did, by which a client may ask about it.
+    pub(crate) exception: Option<String>,
+}
+
+impl Words {
+    pub(crate) fn new(reason: &'static str, description: impl Into<String>) -> Self {
+        Self { reason, description: description.into(), text: None, exception: None }
+    }
+
+    fn wrong(id: &str, description: &str, text: String) -> Self {
+        let (description, exception) = (description.to_owned(), Some(id.to_owned()));
+        Self { reason: "exception", description, text: Some(text), exception }
+    }
+}
+
+/// Of a halt.
+pub(crate) fn halt(session: &Session<'_, Sim>, halt: &Halt) -> Words {
+    match halt {
+        Halt::Done => Words::new("step", "stepped"),
+        Halt::Hits(_) => Words::new("breakpoint", "at a breakpoint"),
+        Halt::Stopped(Stop::Refused(refusal)) => refused(session, refusal),
+        Halt::Stopped(stop) => stopped(session.module(), stop),
+        Halt::Changed => Words::new("step", CHANGED),
+        Halt::EndOfRecording => Words::new("step", END_OF_RECORDING),
+        Halt::StartOfRecording => Words::new("entry", "at the start of what is recorded"),
+        Halt::Limit | Halt::Interrupted => Words::new("pause", "paused"),
+        Halt::Lost => {
+            let text = "the run cannot be shown again: this is a mistake of the debugger";
+            Words::wrong("lost", "lost", text.to_owned())
+        }
+    }
+}
+
+const CHANGED: &str =
+    "a variable was changed by hand here, and nothing recorded what was before: going back ends";
+const END_OF_RECORDING: &str = "at the end of what is recorded: `live` in the debug console goes \
+                                on from here, and commands the workcell";
+
+fn stopped(module: &Module, stop: &Stop) -> Words {
+    let error = |index: usize| module.errors.get(index).map_or("", |error| error.name.as_str());
+    match stop {
+        Stop::Finished => Words::new("end", "the program has ended"),
+        Stop::AtStart => Words::new("entry", "back at the start of the program"),
+        Stop::AtMark | Stop::OffMark | Stop::Budget => Words::new("step", "stepped"),
+        Stop::Raised { error: raised, .. } => {
+            let name = error(raised.index());
+            Words::wrong(name, "error raised", format!("error {name} is raised"))
+        }
+        Stop::Due { error: due, pc } => {
+            let name = error(due.index());
+            let text = format!(
+                "error {name} is due at {}: go back as far as may help, and forward again; or go \
+                 on, and what the program does otherwise follows",
+                line(module, *pc)
+            );
+            Words::wrong(name, "error due", text)
+        }
+        Stop::Fault { fault, pc, direction } => {
+            let back = if *direction == Direction::Reverse { "going back over " } else { "" };
+            Words::wrong("fault", "fault", format!("{back}{}: {fault}", line(module, *pc)))
+        }
+        Stop::Refused(refusal) => Words::new("never", why_not(module, refusal)),
+        Stop::Trap(trap) => Words::wrong("trap", "trap", trapped(module, trap)),
+    }
+}
+
+/// With how to look at what was before.
+fn refused(session: &Session<'_, Sim>, refusal: &Refusal) -> Words {
+    let passed = session.why().never.map(|never| never.moment);
+    let text = passed.map(|moment| {
+        format!("`rewind {moment}` in the debug console shows what was, and commands nothing")
+    });
+    Words { text, ..Words::new("never", why_not(session.module(), refusal)) }
+}
+
+fn why_not(module: &Module, refusal: &Refusal) -> String {
+    let own = refusal.reason.and_then(|reason| module.reasons.get(reason.index()));
+    let why = own.map_or(refusal.why, String::as_str);
+    format!("cannot go back past {}: {why}", line(module, refusal.pc))
+}
+
+fn trapped(module: &Module, trap: &Trap) -> String {
+    let own = match trap.kind {
+        TrapKind::Required(reason) => module.reasons.get(reason.index()).cloned(),
+        _ => None,
+    };
+    format!("{}: {}", line(module, trap.pc), own.unwrap_or_else(|| trap.kind.to_string()))
+}
+
+/// Where an instruction was written: `peg_in_hole.obv:42`.
+pub(crate) fn line(module: &Module, pc: u32) -> String {
+    let place = module.place_of(pc);
+    place.map_or_else(|| format!("instruction {pc}"), |(file, line, _)| format!("{file}:{line}"))
+}
+
+/// What is shown, in a few words.
+pub(crate) fn mode(session: &Session<'_, Sim>) -> String {
+    match session.mode() {
+        Mode::Live => "live".to_owned(),
+        Mode::WhatIf => "what-if".to_owned(),
+        Mode::Rewound => {
+            format!("rewound to {} of {}", session.moment(), session.recording().end)
+        }
+    }
+}

@@ -1,0 +1,111 @@
+//! What no client should send, and clients that go away.
+
+use crate::client::Client;
+use serde_json::{Value, json};
+
+#[test]
+fn requests_out_of_turn_are_refused() {
+    let mut client = Client::new();
+    assert!(client.refused("launch", json!({ "program": "glue.obv" })).contains("initialize"));
+    client.ok("initialize", json!({ "adapterID": "obverse" }));
+    client.refused("initialize", json!({}));
+    assert!(client.refused("continue", json!({ "threadId": 1 })).contains("launch"));
+    assert!(client.refused("attach", json!({ "tape": "run.tape" })).contains("tape"));
+    for wrong in [json!({}), json!({ "program": 3 }), json!({ "program": "none.obv" })] {
+        client.refused("launch", wrong);
+    }
+    client.ok("launch", json!({ "program": "glue.obv" }));
+    assert!(client.refused("next", json!({ "threadId": 1 })).contains("configurationDone"));
+    client.refused("launch", json!({ "program": "glue.obv" }));
+    assert_eq!(client.bye("turn"), Some(0));
+}
+
+#[test]
+fn wrong_requests_are_refused_and_change_nothing() {
+    let mut client = Client::at_entry("glue.obv");
+    let line = client.line();
+    let wrong = [
+        ("nonsense", json!({})),
+        ("configurationDone", json!({})),
+        ("setBreakpoints", json!({})),
+        ("setBreakpoints", json!({ "source": { "path": "/other.obv" }, "breakpoints": [] })),
+        ("scopes", json!({ "frameId": 99 })),
+        ("scopes", json!({ "frameId": -1 })),
+        ("variables", json!({ "variablesReference": 77 })),
+        ("variables", json!({ "variablesReference": 1e300 })),
+        ("variables", json!({ "variablesReference": u64::MAX })),
+        ("setVariable", json!({ "variablesReference": 2, "name": "force", "value": "3" })),
+        ("setVariable", json!({ "variablesReference": 2, "name": "x", "value": "3" })),
+        ("evaluate", json!({ "expression": "nothing_of_this_name", "context": "hover" })),
+        ("evaluate", json!({ "expression": "nothing_of_this_name", "context": "repl" })),
+        ("evaluate", json!({ "expression": "rewind 999999", "context": "repl" })),
+        ("evaluate", json!({ "expression": "rewind -1", "context": "repl" })),
+        ("evaluate", json!({ "expression": "(".repeat(900), "context": "watch" })),
+        ("next", json!({ "threadId": 1, "granularity": "century" })),
+        ("goto", json!({ "threadId": 1, "targetId": 3 })),
+        ("restartFrame", json!({ "frameId": 0 })),
+        ("disassemble", json!({ "memoryReference": "here", "instructionCount": 3 })),
+        ("disassemble", json!({ "memoryReference": "0", "instructionCount": 1e9 })),
+        ("disassemble", json!({ "memoryReference": "0", "instructionCount": 1_000_000 })),
+        ("source", json!({ "sourceReference": 99 })),
+        ("exceptionInfo", json!({ "threadId": 1 })),
+        ("dataBreakpointInfo", json!({ "name": "x", "variablesReference": 1 })),
+        ("stepBack", json!([1, 2])),
+    ];
+    for (command, arguments) in wrong {
+        client.refused(command, arguments);
+    }
+    let far = json!({ "memoryReference": i64::MAX.to_string(), "offset": i64::MAX,
+        "instructionOffset": i64::MAX, "instructionCount": 2 });
+    client.ok("disassemble", far);
+    let points = json!({ "breakpoints": [
+        { "name": "main", "condition": "force" }, { "name": "main", "hitCondition": "0" },
+        { "name": "main", "logMessage": "{" }, { "name": 3 }, 7,
+    ] });
+    let body = client.ok("setFunctionBreakpoints", points);
+    for answer in body["breakpoints"].as_array().expect("answers") {
+        assert_eq!(answer["verified"], false, "{answer}");
+        assert!(answer["message"].is_string());
+    }
+    assert_eq!(client.line(), line);
+    assert_eq!(client.bye("wrong"), Some(0));
+}
+
+#[test]
+fn garbage_is_answered_and_the_session_goes_on() {
+    let mut client = Client::at_entry("glue.obv");
+    let line = client.line();
+    client.raw(b"hello\r\n\r\n");
+    client.event("output");
+    for garbage in [&b"{"[..], b"[]", b"null", b"{\"type\":\"event\"}", b"\xff\xfe", b""] {
+        client.frame(garbage);
+        assert_eq!(client.event("output")["category"], "stderr");
+    }
+    client.frame("[".repeat(100_000).as_bytes());
+    client.event("output");
+    client.frame(&vec![b' '; (1 << 20) + 1]);
+    let told = client.event("output");
+    assert!(told["output"].as_str().is_some_and(|text| text.contains("1048577 bytes")), "{told}");
+    assert_eq!(client.line(), line);
+    assert_eq!(client.bye("garbage"), Some(0));
+}
+
+#[test]
+fn a_client_that_goes_away_ends_it() {
+    let client = Client::at_entry("glue.obv");
+    assert_eq!(client.gone("away"), Some(1));
+    let mut client = Client::at_entry("glue.obv");
+    client.raw(b"Content-Length: 100\r\n\r\n{\"seq\"");
+    assert_eq!(client.gone("half"), Some(1));
+}
+
+#[test]
+fn what_does_not_compile_is_told() {
+    let path = std::path::Path::new(env!("CARGO_TARGET_TMPDIR")).join("dap_wrong.obv");
+    std::fs::write(&path, "sequence main { move to nowhere }\n").expect("a file");
+    let mut client = Client::new();
+    client.ok("initialize", Value::Null);
+    let why = client.refused("launch", json!({ "program": path }));
+    assert!(why.contains("nowhere"), "{why}");
+    assert_eq!(client.bye("diagnostics"), Some(0));
+}

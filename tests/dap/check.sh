@@ -1,0 +1,20 @@
+#!/bin/sh
+# Holds what the debug adapter sends against the protocol's own schema, and lets a client of others
+# drive it. Needs python3, node and their registries; everything is put into the target folder.
+#
+#     cargo test --test dap && tests/dap/check.sh
+set -eu
+here=$(cd "$(dirname "$0")" && pwd)
+root=$(cd "$here/../.." && pwd)
+target=${CARGO_TARGET_DIR:-$root/target}
+mkdir -p "$target/tmp/dap"
+venv=$target/tmp/dap-venv
+if [ ! -x "$venv/bin/python" ]; then
+  python3 -m venv "$venv"
+  "$venv/bin/pip" -q install debugpy jsonschema
+fi
+client=$target/tmp/dap-client
+mkdir -p "$client"
+cp "$here"/client/* "$here"/client/.npmrc "$client"
+(cd "$client" && npm install --silent --no-fund --no-audit && node client.js "$target/debug/obverse" "$root/programs" "$target/tmp/dap/outside.jsonl")
+"$venv/bin/python" "$here/schema.py" "$target/tmp/dap"
