@@ -32,7 +32,7 @@ fn before(source: &str, run: impl FnOnce(&mut Machine<'_>, &mut Logged)) {
 /// Where the arm was led, command by command.
 fn goals(log: &[Command]) -> Vec<Goal> {
     let goal = |command: &Command| match command {
-        Command::Execute(motion) => Some(motion.goal.clone()),
+        Command::Execute(motion) => Some(motion.goal),
         _ => None,
     };
     log.iter().filter_map(goal).collect()

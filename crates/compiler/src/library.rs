@@ -7,7 +7,7 @@
 pub const PREFIX: &str = "library:";
 
 /// The files: the name by which each is imported, and its text.
-pub const FILES: [(&str, &str); 9] = [
+pub const FILES: [(&str, &str); 10] = [
     ("feeder", include_str!("../library/feeder.obv")),
     ("insert", include_str!("../library/insert.obv")),
     ("pick", include_str!("../library/pick.obv")),
@@ -17,6 +17,7 @@ pub const FILES: [(&str, &str); 9] = [
     ("regrasp", include_str!("../library/regrasp.obv")),
     ("snap", include_str!("../library/snap.obv")),
     ("tilt", include_str!("../library/tilt.obv")),
+    ("turn", include_str!("../library/turn.obv")),
 ];
 
 /// The file of a name.

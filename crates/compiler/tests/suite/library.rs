@@ -30,6 +30,7 @@ fn program(file: &str) -> String {
         "regrasp" => "call regrasp(part)",
         "snap" => "call snap",
         "tilt" => "call insert_with_tilt",
+        "turn" => "call turn_home",
         _ => panic!("say how `{file}` is called"),
     };
     format!(
