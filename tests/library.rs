@@ -113,6 +113,14 @@ const USES: &[Use] = &[
         ..NOTHING
     },
     Use {
+        file: "round",
+        does: "io grip call insert_with_round_search(depth: 34 mm, entry: 25 mm, pitch: 0.5 mm) \
+               io release",
+        offset: "{ fixed_mm = [1.4, 0, 0] }",
+        goal: "fixture = \"block\"\ndepth_mm = [13, 15.1]",
+        ..NOTHING
+    },
+    Use {
         file: "tilt",
         does: "io grip call insert_with_tilt(depth: 34 mm, entry: 25 mm, aside: 2 mm, steps: 10) \
                io release",
