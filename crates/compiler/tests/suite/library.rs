@@ -28,8 +28,10 @@ fn program(file: &str) -> String {
         "press" => "call press",
         "probe" => "call probe move probe_offset forward in tcp",
         "regrasp" => "call regrasp(part)",
+        "round" => "call insert_with_round_search",
         "snap" => "call snap",
         "tilt" => "call insert_with_tilt",
+        "turn" => "call turn_home",
         _ => panic!("say how `{file}` is called"),
     };
     format!(
@@ -58,6 +60,7 @@ fn every_file_compiles_without_a_word() {
 #[test]
 fn every_file_is_formatted_and_says_what_it_is() {
     for (name, text) in library::FILES {
+        let text = text();
         assert_eq!(format(text).as_deref(), Ok(text), "{name}");
         let head: Vec<&str> = text.lines().take_while(|line| line.starts_with("//")).collect();
         let head = head.join(" ").replace("// ", "");
