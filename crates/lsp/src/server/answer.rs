@@ -183,7 +183,7 @@ fn library_text(request: Request) -> Response {
     let uri = request.params.get("uri").and_then(Value::as_str).unwrap_or_default();
     let name = uri.strip_prefix(LIBRARY_SCHEME).unwrap_or(uri).trim_end_matches(".obv");
     match library::FILES.iter().find(|(known, _)| *known == name) {
-        Some((_, text)) => Response::new_ok(request.id, text),
+        Some((_, text)) => Response::new_ok(request.id, text()),
         None => {
             let why = format!("the library has no file `{uri}`");
             Response::new_err(request.id, ErrorCode::InvalidParams as i32, why)
