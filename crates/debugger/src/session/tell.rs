@@ -6,6 +6,7 @@ use crate::notes::Note;
 use crate::place::{SourcePlace, source_place};
 use crate::recording::Moment;
 use crate::subject::{Subject, Value, value};
+use crate::writers::commands;
 use obverse_bytecode::{ActionKind, Module};
 use obverse_isa::{Class, LocalId, Setting};
 use obverse_reach::{Reach, Verdict, reason};
@@ -65,7 +66,7 @@ pub struct Why {
     pub never: Option<Stopper>,
     /// What could stop it, on whatever way a run comes there.
     pub verdict: Verdict,
-    /// How many actions lie between.
+    /// How many things that the robot did lie between.
     pub actions: usize,
     /// Whether the very next step back is refused.
     pub is_refused_here: bool,
@@ -200,7 +201,7 @@ impl<C: Workcell> Session<'_, C> {
         let mut newest: Option<&Note> = None;
         let mut actions = 0;
         for note in standing.iter().copied().filter(|note| note.steps > since) {
-            let is_action = module.source_at(note.pc).is_some_and(|entry| entry.action.is_some());
+            let is_action = module.code.get(note.pc as usize).is_some_and(commands);
             let is_on = newest.is_some_and(|before| goes_on(module, before, note));
             actions += usize::from(is_action && !is_on);
             newest = Some(note);
