@@ -67,7 +67,7 @@ async function main() {
   await assert.rejects(client.stepBackRequest({ threadId }), /the glue is on the block/);
   await Promise.all([
     client.nextRequest({ threadId }),
-    client.assertStoppedLocation("step", { line: lineOf("call look") }),
+    client.assertStoppedLocation("step", { line: behind + 1 }),
   ]);
   await Promise.all([
     client.reverseContinueRequest({ threadId }),
