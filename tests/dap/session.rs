@@ -108,9 +108,10 @@ fn breakpoints_of_all_kinds_stop_a_run() {
     let body = client.ok("setInstructionBreakpoints", at);
     assert_eq!(body["breakpoints"][1]["verified"], false);
     assert_eq!(client.go("continue", json!({}))["reason"], "instruction breakpoint");
+    let line = line_of(&glue(), "set 2 high");
     let log = json!({
         "source": { "path": glue() },
-        "breakpoints": [{ "line": line_of(&glue(), "set 2 high"), "logMessage": "light {output 2}" }],
+        "breakpoints": [{ "line": line, "logMessage": "light {output 2}" }],
     });
     client.ok("setBreakpoints", log);
     assert_eq!(client.go("continue", json!({}))["reason"], "end");

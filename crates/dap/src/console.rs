@@ -55,7 +55,11 @@ impl Debuggee<'_, '_, '_> {
         let module = self.session.module();
         let text = asked.expression.trim();
         let function = self.function_of(asked.frame_id);
-        let result = |text: &str, kind: &str| json!({ "result": text, "type": kind, "variablesReference": 0 });
+        let result = |text: &str, kind: &str| {
+            let mut result = json!({ "result": text, "variablesReference": 0 });
+            result["type"] = json!(kind);
+            result
+        };
         let error = match Expression::parse(module, function, text) {
             Ok(expression) => {
                 let value = self.session.look(|look| expression.value(look));

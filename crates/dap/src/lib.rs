@@ -1,4 +1,5 @@
-//! The debug adapter: a session of the debugger, spoken to by editors in the Debug Adapter Protocol.
+//! The debug adapter: a session of the debugger, which editors speak to in the Debug Adapter
+//! Protocol.
 //!
 //! Bytes come in and go out; what is to be said to people beside that, and how a program is loaded,
 //! is the caller's. A client is not trusted: whatever it sends, it is answered or told why not, and

@@ -155,8 +155,8 @@ impl Server<'_> {
     }
 }
 
-const NO_ATTACH: &str = "a tape holds what going back needs, and not what the workcell answered, so \
-                         that its run cannot be shown again: `launch` the program with its seed";
+const NO_ATTACH: &str = "a tape holds what going back needs, and not what the workcell answered: \
+                         its run cannot be shown again; `launch` the program with its seed";
 
 /// What is there, and nothing else.
 fn capabilities() -> Value {

@@ -59,7 +59,11 @@ impl Debuggee<'_, '_, '_> {
         if frame == 0 || frame > depth {
             return Err(format!("there is no call {frame}: {depth} are under way"));
         }
-        let scope = |name: &str, reference: u64| json!({ "name": name, "variablesReference": reference, "expensive": false });
+        let scope = |name: &str, reference: u64| {
+            let mut scope = json!({ "name": name, "expensive": false });
+            scope["variablesReference"] = json!(reference);
+            scope
+        };
         let mut locals = scope("Locals", LOCALS + frame as u64 - 1);
         locals["presentationHint"] = json!("locals");
         let mut scopes = vec![locals, scope("Globals", GLOBALS), scope("Workcell", WORKCELL)];
