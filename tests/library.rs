@@ -149,7 +149,8 @@ const USES: &[Use] = &[
     },
     Use {
         file: "turn",
-        declares: "advanced move set_on { distance 30 mm forward in tcp stop if force > 3 N speed slow }",
+        declares: "advanced move set_on { distance 30 mm forward in tcp stop if force > 3 N \
+                   speed slow }",
         does: "io grip advance set_on call turn_home(by: 640 deg, lead: 2.4 mm, force_limit: 20 N) \
                io release",
         hole: "{ diameter_mm = 10.1, depth_mm = 15, chamfer_mm = 1, thread = { at_mm = 3, \

@@ -59,8 +59,8 @@ fn load(path: &Path) -> Program {
     let mut module =
         compiled.module.unwrap_or_else(|| panic!("{name}: {:#?}", compiled.diagnostics));
     // Where a program has an error and names no fault, its first one is raised by all of them; but
-    // no warning is, which would let it go on as if nothing had happened, and wait for ever for what
-    // did not.
+    // no warning is, which would let it go on as if nothing had happened, and wait for ever for
+    // what did not.
     let names_faults = module.errors.iter().any(|error| !error.faults.is_empty());
     let is_more = |error: &&mut ErrorDeclaration| error.severity != Severity::Warning;
     if let (false, Some(error)) = (names_faults, module.errors.iter_mut().find(is_more)) {

@@ -183,7 +183,7 @@ pub(crate) fn record(
     write::file(path, &file.to_bytes().map_err(cannot)?)
 }
 
-/// What is not as the workcell file says that it should be, of a run that believes that all is well.
+/// What is not as the workcell file says that it should be, of a run that believes all is well.
 fn missed(ending: &Ending, cell: &Sim) -> Vec<Missed> {
     if *ending == Ending::Finished { cell.missed_goals() } else { Vec::new() }
 }
@@ -212,7 +212,10 @@ fn finish(
         more.insert("errors".to_owned(), report::pending(machine));
         more.insert("incidents".to_owned(), recovering::incidents(module, incidents));
         more.insert("stopped_at".to_owned(), report::place(module, report::ending_pc(ending)));
-        let goal = |missed: &Missed| json!({ "goal": missed.goal + 1, "why": missed.why.code(), "text": missed.to_string() });
+        let goal = |missed: &Missed| {
+            let (why, text) = (missed.why.code(), missed.to_string());
+            json!({ "goal": missed.goal + 1, "why": why, "text": text })
+        };
         more.insert("missed_goals".to_owned(), missed.iter().map(goal).collect());
         more.extend(unrecorded.map(report::messages));
         let code = if missed.is_empty() { ending.code() } else { "false_success" };

@@ -2,9 +2,9 @@
 //!
 //! An incident has a least depth that is enough. An attempt that goes so far helps with a chance
 //! that depends on which attempt it is: a search that has come round without finding anything finds
-//! less and less, and what was done anew three times in vain is seldom put right by the fourth. What
-//! the counts leave open of the depths is shared out by expectation maximisation (Turnbull 1976)
-//! over a prior that holds near depths likelier. Knows nothing of errors and places.
+//! less and less, and what was done anew three times in vain is seldom put right by the fourth.
+//! What the counts leave open of the depths is shared out by expectation maximisation (Turnbull
+//! 1976) over a prior that holds near depths likelier. Knows nothing of errors and places.
 
 use crate::memory::{ATTEMPTS_MAX, Costs, DEPTH_MAX, Kind};
 use std::collections::BTreeMap;

@@ -9,8 +9,9 @@
 //! error at a place and what has been tried, with the words for a place, a fault that becomes an
 //! error and what the program asks for (`place`, `fault`, `asked`); [`depth`], how far to go back
 //! next; [`memory`], what was learned of that, and `belief`, what follows; [`foresight`], who would
-//! know better; [`change`], what is done otherwise on the way forward again; [`tell`], what a person is told, and the tape (`noted`); [`mod@recover`],
-//! the loop, and `attempt`, one way back and forward again in it.
+//! know better; [`change`], what is done otherwise on the way forward again; [`tell`], what a
+//! person is told, and the tape (`noted`); [`mod@recover`], the loop, and `attempt`, one way back and
+//! forward again in it.
 
 mod asked;
 mod attempt;

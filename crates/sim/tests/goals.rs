@@ -28,10 +28,16 @@ const HOLES: &str = r#"
     name = "block"
     place = { taught_at_rad = [3.1, -1.57, 1.56, -1.56, -1.57, -6], xyz_mm = [0, 0, 50] }
     body = [{ cuboid_mm = [90, 60, 60], at = { xyz_mm = [0, 0, 30] } }]
-    hole = [
-      { mouth = { xyz_mm = [-30, 0, 0] }, diameter_mm = 10.2, depth_mm = 15, chamfer_mm = 1 },
-      { diameter_mm = 10.1, depth_mm = 15, chamfer_mm = 1, snap = { at_mm = 12, travel_mm = 3, peak_n = 15, hold_n = 25 } },
-    ]
+    [[fixture.hole]]
+    mouth = { xyz_mm = [-30, 0, 0] }
+    diameter_mm = 10.2
+    depth_mm = 15
+    chamfer_mm = 1
+    [[fixture.hole]]
+    diameter_mm = 10.1
+    depth_mm = 15
+    chamfer_mm = 1
+    snap = { at_mm = 12, travel_mm = 3, peak_n = 15, hold_n = 25 }
     [contact]
     stiffness_n_per_mm = 60
     stop_force_n = 48
@@ -134,7 +140,8 @@ fn what_fell_or_is_not_held_misses_its_goal() {
 fn a_goal_that_a_part_has_met_stays_met_when_the_next_one_comes() {
     let feeder =
         "[[feeder]]\nname = \"tray\"\nitem = \"pin\"\noutput = 3\nready = true\ndelay_s = 0.1\n";
-    let goal = "[[goal]]\nitem = \"pin\"\nplace = { taught_at_rad = [0.4, -1.4, 1.6, -1.77, -1.57, 0.3] }\n\
+    let goal = "[[goal]]\nitem = \"pin\"\n\
+                place = { taught_at_rad = [0.4, -1.4, 1.6, -1.77, -1.57, 0.3] }\n\
                 within_mm = 1\nwithin_deg = 1\n";
     let mut sim = Sim::new(&pin_on_plate("", "", "", &format!("{feeder}{goal}")), 1);
     assert_eq!(sim.missed_goals(), []);

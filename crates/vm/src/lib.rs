@@ -10,11 +10,13 @@
 //! Reading order: [`class`], the traits that every effect implements; [`values`], what a pure
 //! instruction sees; `ops`, every opcode by family, forward and reverse side by side; `state`;
 //! `hot`, the loops over what needs no workcell, with `reversed` and `update`, the code as a run in
-//! reverse meets it; `step`, everything else; [`machine`], the whole.
+//! reverse meets it; `step`, everything else, and `block`, blocks with a reverse of
+//! their own; [`machine`], the whole.
 //! The machine knows nothing of source languages, of how a workcell does what it is told, or of
 //! when going back is wise.
 
 pub mod alter;
+mod block;
 pub mod branches;
 pub mod class;
 pub mod convert;

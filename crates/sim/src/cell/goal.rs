@@ -177,7 +177,7 @@ impl Builder<'_> {
             (Some(hole), _) => {
                 let number = hole.get_ref();
                 let message = format!(
-                    "`{}` has no hole {number}: its holes are 1 to {count}, in the order of the file",
+                    "`{}` has no hole {number}: its holes are 1 to {count}, in the file's order",
                     fixture.name
                 );
                 Err(self.error(hole, message).of(CellCode::UnknownName))

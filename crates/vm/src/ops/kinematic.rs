@@ -62,7 +62,7 @@ impl Acts<'_> {
         }
     }
 
-    /// Go back to where a motion began, and where it was made aside, by there: the way that it came.
+    /// Go back to where a motion began, and where it was made aside, by there: the way it came.
     fn go_back_from(
         &mut self,
         start: &Joints,
