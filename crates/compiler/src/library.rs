@@ -8,9 +8,12 @@ mod round;
 /// What the name of a file of the library begins with, where it is told from those of the program.
 pub const PREFIX: &str = "library:";
 
-/// The files: the name by which each is imported, and what gives its text. Most are written by
-/// hand; one is made by Rust where the language cannot say what its body needs.
-pub const FILES: [(&str, fn() -> &'static str); 11] = [
+/// The name by which a file is imported, and what gives its text.
+pub type File = (&'static str, fn() -> &'static str);
+
+/// The files. Most are written by hand; one is made by Rust where the language cannot say what its
+/// body needs.
+pub const FILES: [File; 11] = [
     ("feeder", || include_str!("../library/feeder.obv")),
     ("insert", || include_str!("../library/insert.obv")),
     ("pick", || include_str!("../library/pick.obv")),
