@@ -74,12 +74,14 @@ pub fn goes_back_along_the_trail(u: &mut Unstructured<'_>) -> Result<bool> {
 }
 
 /// A way back that is blocked in an act, and gone forward from there: the trail is what it was, no
-/// action longer and none shorter.
+/// action longer and none shorter. Branches of a fork may take their turns otherwise then, since the
+/// clock has gone on, so that programs without forks are looked at.
 ///
 /// # Errors
 /// Those of the randomness.
 pub fn keeps_the_trail_over_a_blocked_return(u: &mut Unstructured<'_>) -> Result<bool> {
-    let source = programs::generate(u, Options { allow_overrides: false, ..Options::default() })?;
+    let options = Options { allow_overrides: false, allow_forks: false, ..Options::default() };
+    let source = programs::generate(u, options)?;
     let program = program(&source, |_| {});
     let mut cell = Logged::new(u.arbitrary()?).steady();
     let Ok(mut machine) = Machine::new(&program, &cell) else { return Ok(false) };
