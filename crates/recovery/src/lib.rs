@@ -10,7 +10,8 @@
 //! error and what the program asks for (`place`, `fault`, `asked`); [`depth`], how far to go back
 //! next; [`memory`], what was learned of that, and `belief`, what follows; [`foresight`], who would
 //! know better; [`change`], what is done otherwise on the way forward again; [`tell`], what a
-//! person is told, and the tape (`noted`); [`mod@recover`], the loop, and `attempt`, one way back and
+//! person is told, and the tape (`noted`); [`mod@recover`], the loop, and `attempt`, one way
+//! back and
 //! forward again in it.
 
 mod asked;
