@@ -141,16 +141,18 @@ impl Memory {
         costs: Costs<'_>,
     ) -> Choice {
         let known = self.known(error, place);
-        let belief = match self.places.get_mut(&(error.to_owned(), place.to_owned())) {
+        let mut belief = match self.places.get_mut(&(error.to_owned(), place.to_owned())) {
             Some(known) => known.belief.get_or_insert_with(|| Belief::of(&known.times)).clone(),
             None => Belief::of(&BTreeMap::new()),
         };
-        let course = belief.after(tried);
+        for &depth in tried {
+            belief.fail(depth);
+        }
         let slack = |depth: usize| match tried {
             [] => 1.0 + CURIOSITY * FEW / (FEW + self.tried(error, place, depth)),
             _ => 1.0,
         };
-        let best = course.best(costs, slack);
+        let best = belief.best(costs, slack);
         let is_worth_it = best.is_some_and(|(expected_s, _)| expected_s < costs.give_up_s);
         let furthest = costs.by_depth_s.len().min(DEPTH_MAX);
         let goes_on = is_worth_it || self.in_vain(error, place, furthest) < IN_VAIN_MIN;
@@ -159,7 +161,7 @@ impl Memory {
             Some((expected_s, depth)) => (expected_s, Some(depth)),
             None => (costs.give_up_s, None),
         };
-        let chance = actions.map_or(0.0, |depth| course.chance(depth));
+        let chance = actions.map_or(0.0, |depth| belief.chance(depth));
         Choice { actions, chance, expected_s, known }
     }
 }
