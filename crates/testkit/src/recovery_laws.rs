@@ -100,6 +100,8 @@ pub fn keeps_the_trail_over_a_blocked_return(u: &mut Unstructured<'_>) -> Result
     let prefix = u64::from(program.module().code[pc as usize].prefix());
     watch.0.cut_into(machine.state().steps() - 1 - prefix, pc);
     cell.release();
+    // What is half undone is done again even where no step is left to be made.
+    let _again = machine.step(Direction::Forward, &mut cell, &mut watch);
     go_on(&mut machine, &mut cell, &mut watch, steps);
     if machine.state().steps() == steps {
         assert_eq!(actions(&watch.0), before, "blocked at {pc}\n{source}");
