@@ -24,13 +24,16 @@ fn the_inverse_is_a_program_that_is_formatted_and_correct() {
 #[test]
 fn the_inverse_takes_apart_what_was_put_together() {
     let bench = Bench::new("invert_after");
-    let inverse = bench.ends(0, &["invert", "sheets.obv", "main"]).stdout;
-    bench.write("back.obv", &inverse);
-    bench.ends(1, &["run", "back.obv"]);
-    for command in ["run", "back"] {
-        let ran = bench.ends(0, &[command, "back.obv", "--after", "sheets.obv"]).stdout;
-        assert!(ran.starts_with("back.obv in vacuum_cell.toml, seed 0, after sheets.obv"), "{ran}");
-        assert!(ran.contains("\nfinished\n"), "{ran}");
+    for program in ["sheets.obv", "tower.obv"] {
+        let inverse = bench.ends(0, &["invert", program, "main"]).stdout;
+        bench.write("apart.obv", &inverse);
+        bench.ends(1, &["run", "apart.obv"]);
+        for command in ["run", "back"] {
+            let ran = bench.ends(0, &[command, "apart.obv", "--after", program]).stdout;
+            let head = ran.lines().next().expect("a head");
+            assert!(head.ends_with(&format!("seed 0, after {program}")), "{ran}");
+            assert!(ran.contains("\nfinished\n"), "{ran}");
+        }
     }
 }
 
