@@ -1,4 +1,4 @@
-//! `--after PROGRAM`: what begins where another program has ended, as the inverse of a sequence does.
+//! `--after PROGRAM`: what begins where another program has ended, as an inverse does.
 //!
 //! The other program runs in the same workcell first, untold and without a tape. Knows nothing of
 //! what begins then.
