@@ -6,6 +6,7 @@
 
 mod cleanup;
 mod sites;
+mod watched;
 
 use obverse_bytecode::{FaultName, Module, verify};
 use obverse_compiler::compile;
