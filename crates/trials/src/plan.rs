@@ -83,7 +83,6 @@ impl Plan {
             ("program", self.program.clone(), other.program.clone()),
             ("compiled program", self.program_digest.clone(), other.program_digest.clone()),
             ("workcell", self.cell_digest.clone(), other.cell_digest.clone()),
-            ("memory", digest(&self.memory_digest), digest(&other.memory_digest)),
             ("list of strategies", list(self), list(other)),
             ("seed", self.seed.to_string(), other.seed.to_string()),
             ("number of runs", self.runs.to_string(), other.runs.to_string()),
@@ -94,6 +93,8 @@ impl Plan {
                 self.instructions.to_string(),
                 other.instructions.to_string(),
             ),
+            // Last, since what is learned follows from most of the others.
+            ("memory", digest(&self.memory_digest), digest(&other.memory_digest)),
         ];
         let (what, mine, theirs) = rows.into_iter().find(|(_, mine, theirs)| mine != theirs)?;
         Some(format!("its {what} is {theirs}, and not {mine}"))
