@@ -112,7 +112,7 @@ laws! {
     debug_laws: shows_what_was >= 80 moves_lead_where_they_say >= 50;
     wait_laws: waits_are_waited >= 10;
     recovery_laws: goes_back_along_the_trail >= 60 recovers_within_bounds >= 5
-        comes_back_to_what_was_left >= 10;
+        keeps_the_trail_over_a_blocked_return >= 10 comes_back_to_what_was_left >= 10;
     preflight_laws: foretells >= 60 foretells_of_modules >= 10;
     invert_laws: inverts_anything_twice >= 20;
     laws: compiles >= 100 agrees_forward >= 95 agrees_backward >= 75;

@@ -74,8 +74,7 @@ pub fn goes_back_along_the_trail(u: &mut Unstructured<'_>) -> Result<bool> {
 }
 
 /// A way back that is blocked in an act, and gone forward from there: the trail is what it was, no
-/// action longer and none shorter. Branches of a fork may take their turns otherwise then, since
-/// the
+/// action longer and none shorter. Branches of a fork may take their turns otherwise then, since the
 /// clock has gone on, so that programs without forks are looked at.
 ///
 /// # Errors
@@ -101,6 +100,8 @@ pub fn keeps_the_trail_over_a_blocked_return(u: &mut Unstructured<'_>) -> Result
     let prefix = u64::from(program.module().code[pc as usize].prefix());
     watch.0.cut_into(machine.state().steps() - 1 - prefix, pc);
     cell.release();
+    // What is half undone is done again even where no step is left to be made.
+    let _again = machine.step(Direction::Forward, &mut cell, &mut watch);
     go_on(&mut machine, &mut cell, &mut watch, steps);
     if machine.state().steps() == steps {
         assert_eq!(actions(&watch.0), before, "blocked at {pc}\n{source}");

@@ -4,7 +4,7 @@
 use crate::programs::{self, Options};
 use arbitrary::{Result, Unstructured};
 use obverse_bytecode::Module;
-use obverse_compiler::symbols::Symbols;
+use obverse_compiler::symbols::{Symbol, SymbolKind, Symbols};
 use obverse_compiler::{Loader, analyse, compile};
 
 /// Called so wherever it is named, a thing of a program is what it was: the code is the same.
@@ -30,11 +30,16 @@ pub fn renames(u: &mut Unstructured<'_>) -> Result<bool> {
     Ok(true)
 }
 
-/// What the program itself has given a name that may be another.
+/// What the program itself has given a name that may be another. A keyframe that several items have
+/// is one name to the module: called otherwise at one of them, it becomes two.
 fn own(symbols: &Symbols) -> Vec<usize> {
     let all = symbols.symbols.iter().enumerate();
+    let is_shared = |one: &Symbol| {
+        let same = symbols.symbols.iter().filter(|other| other.name == one.name);
+        one.kind == SymbolKind::Keyframe && same.count() > 1
+    };
     let own = all.filter(|(_, symbol)| !symbol.declared.is_empty() && symbol.name != "main");
-    own.map(|(id, _)| id).collect()
+    own.filter(|(_, symbol)| !is_shared(symbol)).map(|(id, _)| id).collect()
 }
 
 fn renamed(text: &str, symbols: &Symbols, symbol: usize) -> String {
