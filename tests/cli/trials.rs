@@ -64,13 +64,13 @@ fn shards_that_do_not_make_a_campaign_are_refused() {
     }
     let two = bench.read("two");
     bench.write("torn", &two[..two.len() - 9]);
-    let other = String::from_utf8(two).expect("text").replace("\"format\":2", "\"format\":7");
+    let other = String::from_utf8(two).expect("text").replace("\"format\":3", "\"format\":7");
     bench.write("other", other);
     bench.refuses(&["trials", "--merge", "one"], &["shard 2/2 is missing"]);
     bench.refuses(&["trials", "--merge", "one", "one", "two"], &["one: this is shard 1/2"]);
     bench.refuses(&["trials", "--merge", "one", "foreign"], &["foreign: ", "seed is 1, and not 0"]);
     bench.refuses(&["trials", "--merge", "one", "torn"], &["torn: ", "not whole"]);
-    bench.refuses(&["trials", "--merge", "one", "other"], &["other: ", "format 7", "format 2"]);
+    bench.refuses(&["trials", "--merge", "one", "other"], &["other: ", "format 7", "format 3"]);
     bench.refuses(&["trials", "--merge", "one", "sheets.obv"], &["sheets.obv: ", "no file of a"]);
     bench.refuses(&["trials", "--merge", "one", "gone"], &["gone: "]);
     let over = ["trials", "--merge", "one", "two", "--out", "one"];

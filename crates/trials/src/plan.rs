@@ -24,6 +24,9 @@ pub struct Plan {
     /// How many goals of the workcell file a finished assembly is judged by; with none, what the
     /// program itself believes is all that is known.
     pub goals: u32,
+    /// How many of the program's errors have a sequence written against them; with none, the
+    /// strategy that goes by them does what stopping does.
+    pub sequences: u32,
     /// A digest of what the strategy that learns goes by; none where it is not compared.
     pub memory_digest: Option<String>,
     /// The strategies, in the order of the tables.

@@ -1,6 +1,7 @@
 //! The tables of a campaign, as text.
 
 use crate::statistics::Interval;
+use crate::strategy::Strategy;
 use crate::tally::{Errors, Kind, Summary, Tally};
 
 /// A table whose first columns are words, and the others numbers.
@@ -55,7 +56,30 @@ pub fn draw(summary: &Summary) -> String {
             text.push_str(&table.draw());
         }
     }
+    for note in notes(summary) {
+        text.push('\n');
+        text.push_str(note);
+    }
     text
+}
+
+/// What must be known to read the tables rightly.
+fn notes(summary: &Summary) -> Vec<&'static str> {
+    let is_tried = |strategy| summary.strategies.iter().any(|tally| tally.strategy == strategy);
+    let mut notes = Vec::new();
+    if !summary.is_judged {
+        notes.push(
+            "The workcell file has no goal: what succeeded is what the program believes, and \
+             nobody has looked.\n",
+        );
+    }
+    if is_tried(Strategy::Explicit) && !summary.has_sequences {
+        notes.push(
+            "No error of the program has a sequence written against it: explicit does what stop \
+             does.\n",
+        );
+    }
+    notes
 }
 
 fn by_strategy(summary: &Summary) -> Table {
@@ -224,7 +248,6 @@ pub fn grouped(number: u64) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::strategy::Strategy;
     use std::collections::BTreeMap;
 
     fn kind(error: &str, cause: Option<&str>, count: u64) -> Kind {
@@ -246,7 +269,7 @@ mod tests {
             kinds,
             makespans_s: Vec::new(),
         };
-        Summary { strategies: vec![tally], is_judged: false }
+        Summary { strategies: vec![tally], is_judged: false, has_sequences: false }
     }
 
     #[test]
@@ -259,6 +282,17 @@ mod tests {
         assert_eq!(words, ["all", "b", "d", "c", "and 2 more"]);
         assert_eq!(rows.len(), ERRORS_SHOWN + CAUSES_SHOWN + 2);
         assert_eq!(rows.last().expect("rows").0, "and 28 more");
+    }
+
+    #[test]
+    fn what_must_be_known_of_the_tables_is_said() {
+        let mut summary = tally(Vec::new(), BTreeMap::from([(0, 5)]));
+        assert!(draw(&summary).contains("no goal") && !draw(&summary).contains("explicit"));
+        summary.is_judged = true;
+        summary.strategies[0].strategy = Strategy::Explicit;
+        assert!(draw(&summary).contains("explicit does what stop does"));
+        summary.has_sequences = true;
+        assert_eq!(notes(&summary).len(), 0);
     }
 
     #[test]

@@ -14,6 +14,8 @@ pub struct Summary {
     pub strategies: Vec<Tally>,
     /// Whether assemblies were judged by goals, and not by what the program believes.
     pub is_judged: bool,
+    /// Whether an error of the program has a sequence written against it.
+    pub has_sequences: bool,
 }
 
 /// What came of all assemblies by a strategy.
@@ -124,7 +126,7 @@ pub fn summary(plan: &Plan, records: &[Record]) -> Summary {
         tally(*strategy, records.iter().filter(|record| record.strategy == *strategy))
     };
     let strategies = plan.strategies.iter().map(tally).collect();
-    Summary { strategies, is_judged: plan.goals > 0 }
+    Summary { strategies, is_judged: plan.goals > 0, has_sequences: plan.sequences > 0 }
 }
 
 fn tally<'r>(strategy: Strategy, records: impl Iterator<Item = &'r Record>) -> Tally {

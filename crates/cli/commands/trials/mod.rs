@@ -200,6 +200,7 @@ fn plan(
         program_digest: digest(&module),
         cell_digest: digest(cell_text.unwrap_or_default().as_bytes()),
         goals: u32::try_from(cell.goals.len()).unwrap_or(u32::MAX),
+        sequences: sequences(program),
         memory_digest: None,
         strategies,
         seed: arguments.seed,
@@ -208,6 +209,12 @@ fn plan(
         releases: arguments.release,
         instructions: arguments.limit,
     })
+}
+
+/// How many errors of a program have a sequence written against them.
+fn sequences(program: &Program) -> u32 {
+    let errors = program.verified.module().errors.iter();
+    errors.map(|error| u32::from(obverse_recovery::sequence(error).is_some())).sum()
 }
 
 fn digest(bytes: &[u8]) -> String {

@@ -74,6 +74,7 @@ pub(crate) fn plan(strategies: &str, runs: u64) -> Plan {
         program_digest: "1".to_owned(),
         cell_digest: "2".to_owned(),
         goals: 1,
+        sequences: 1,
         memory_digest: None,
         strategies: Strategy::list(strategies).expect("a list"),
         seed: 5,
