@@ -74,7 +74,7 @@ impl Errors {
         self.count += 1;
         if is_put_right {
             self.recovered += 1;
-            if let Some(depth) = incident.depths.last() {
+            if let Some(depth) = incident.depths.last().filter(|_| !incident.otherwise) {
                 *self.depths.entry(*depth).or_default() += 1;
             }
         }
