@@ -20,6 +20,7 @@ fn plan() -> Plan {
         cell_digest: String::new(),
         memory_digest: None,
         goals: 0,
+        sequences: 1,
         strategies: vec![Strategy::Explicit],
         seed: 0,
         runs: RUNS,

@@ -99,8 +99,7 @@ fn module_with(
         _ => {
             let (mut module, mut diagnosed, actions) = compiled(path, &raw, &Defaults::new())?;
             if !parameters.is_empty() {
-                let name = path.file_name().unwrap_or_default().to_string_lossy();
-                let defaults = crate::parameters::defaults(parameters, &name, &actions)?;
+                let defaults = crate::parameters::defaults(parameters, (path, &module), &actions)?;
                 (module, diagnosed, _) = compiled(path, &raw, &defaults)?;
             }
             Ok((module, Some(diagnosed)))

@@ -3,6 +3,7 @@
 
 use crate::load;
 use crate::problem::Problem;
+use obverse_bytecode::Module;
 use obverse_compiler::{Action, Defaults, Parameter};
 use obverse_learn::{ParameterFile, Value};
 use std::path::{Path, PathBuf};
@@ -16,19 +17,29 @@ pub(crate) struct ParameterArguments {
     pub(crate) parameters: Vec<PathBuf>,
 }
 
-/// The values of all files, for a program of this file name with these actions.
+/// What tells one program from another: all of it that runs, and nothing of its files and texts.
+pub(crate) fn digest(path: &Path, module: &Module) -> Result<String, Problem> {
+    let (sources, source_map, mentions) = Default::default();
+    let bare = Module { sources, source_map, mentions, ..module.clone() };
+    let bytes = obverse_bytecode::encode(&bare).map_err(|error| Problem::of_file(path, error))?;
+    Ok(format!("{:016x}", obverse_bytecode::fingerprint(&bytes)))
+}
+
+/// The values of all files, for the program of a file with these actions, compiled with its own
+/// defaults.
 pub(crate) fn defaults(
     files: &[PathBuf],
-    program: &str,
+    (program, module): (&Path, &Module),
     actions: &[Action],
 ) -> Result<Defaults, Problem> {
+    let digest = digest(program, module)?;
+    let program = program.file_name().unwrap_or_default().to_string_lossy();
     let mut defaults = Defaults::new();
     for path in files {
         let file = read(path)?;
         let wrong = |why: String| Err(Problem::of_file(path, why));
-        if file.program != program {
-            let learned = &file.program;
-            return wrong(format!("learned for `{learned}`, and this is `{program}`"));
+        if let Some(why) = foreign(&file, &program, &digest) {
+            return wrong(why);
         }
         let Some(action) = actions.iter().find(|action| action.name == file.action) else {
             return wrong(format!("`{program}` has no action `{}`", file.action));
@@ -48,6 +59,21 @@ pub(crate) fn defaults(
         }
     }
     Ok(defaults)
+}
+
+/// Why a file is not of this program.
+fn foreign(file: &ParameterFile, program: &str, digest: &str) -> Option<String> {
+    let learned = &file.program;
+    match &file.program_digest {
+        Some(known) if known == digest => None,
+        None if learned == program => None,
+        Some(_) if learned == program => Some(format!(
+            "learned for another program of the name `{program}`, or for this before it was \
+             changed: learn it again, or take out its `program_digest` to use the values all the \
+             same"
+        )),
+        _ => Some(format!("learned for `{learned}`, and this is `{program}`")),
+    }
 }
 
 fn read(path: &Path) -> Result<ParameterFile, Problem> {

@@ -1,5 +1,6 @@
 //! Output: to a file whole or not at all, and to a standard output that may be closed any time.
 
+use crate::files;
 use crate::problem::{Problem, plain};
 use std::borrow::Cow;
 use std::fs;
@@ -7,8 +8,8 @@ use std::io::{self, ErrorKind, IsTerminal, Write};
 use std::path::{Path, PathBuf};
 
 /// Check that a file can become what a command is about to make, before anything is done: its
-/// folder is there, it is a regular file or none, and it is none of the files that the command
-/// reads.
+/// folder is there and takes files, it is a regular file or none, and it is none of the files that
+/// the command reads.
 pub(crate) fn check(path: &Path, what: &str, inputs: &[PathBuf]) -> Result<(), Problem> {
     let cannot = |why: String| Err(Problem::of_file(path, why));
     check_text(path, what, inputs)?;
@@ -37,7 +38,41 @@ pub(crate) fn check_text(path: &Path, what: &str, inputs: &[PathBuf]) -> Result<
     if let Some(input) = inputs.iter().find(|input| is_same(&target, input)) {
         return cannot(format!("the {what} would overwrite {}", input.display()));
     }
-    Ok(())
+    try_out(path, &target)
+}
+
+/// Check that a file that is there may be replaced: that it is what a command of Obverse wrote
+/// there, by what is in it.
+pub(crate) fn check_own(
+    path: &Path,
+    what: &str,
+    is_own: impl Fn(&str) -> bool,
+) -> Result<(), Problem> {
+    if !path.exists() {
+        return Ok(());
+    }
+    let bytes = files::read(path).map_err(|why| Problem::of_file(path, why))?;
+    if String::from_utf8(bytes).is_ok_and(|text| is_own(&text)) {
+        return Ok(());
+    }
+    let why = format!(
+        "this file is there already, is not {what}, and is not overwritten; name another, or \
+         remove it"
+    );
+    Err(Problem::of_file(path, why))
+}
+
+/// Check that a folder takes a file, by one that is gone at once.
+fn try_out(path: &Path, target: &Path) -> Result<(), Problem> {
+    let neighbour = neighbour(target);
+    let tried = fs::File::create(&neighbour).and_then(|_| fs::remove_file(&neighbour));
+    tried.map_err(|error| Problem::of_file(path, format!("cannot be written: {}", plain(&error))))
+}
+
+/// Where a file is written until it is complete: short, so that it fits wherever the name itself
+/// does.
+fn neighbour(target: &Path) -> PathBuf {
+    target.with_file_name(format!(".{}.part", std::process::id()))
 }
 
 /// The file that a path names: where it is a symbolic link, what that leads to. A regular file, or
@@ -71,8 +106,7 @@ fn is_same(a: &Path, b: &Path) -> bool {
 /// was there is kept if anything goes wrong. Who may read and write it stays as it was.
 pub(crate) fn file(path: &Path, bytes: &[u8]) -> Result<(), Problem> {
     let target = target(path)?;
-    // Short, so that it fits wherever the name itself does.
-    let neighbour = target.with_file_name(format!(".{}.part", std::process::id()));
+    let neighbour = neighbour(&target);
     let written = fs::File::create(&neighbour)
         .and_then(|mut file| file.write_all(bytes).and_then(|()| file.sync_all()))
         .and_then(|()| match fs::metadata(&target) {

@@ -53,11 +53,15 @@ fn a_wrong_parameter_file_is_refused() {
     bench.ends(0, &learn(&[]));
     let whole = String::from_utf8(bench.read("best")).expect("text");
     let half = &whole[..whole.len() / 2];
-    let cases: [(&str, String, &str); 7] = [
+    let digest = |line: &&str| line.starts_with("program_digest = ");
+    let digest = whole.lines().find(digest).expect("a digest");
+    let other = whole.replace(digest, "program_digest = \"0\"");
+    let cases: [(&str, String, &str); 8] = [
         ("torn", half.to_owned(), "not a whole parameter file"),
         ("foreign", "[arm]\nhome_rad = [0, 0, 0, 0, 0, 0]\n".to_owned(), "not a parameter file"),
         ("newer", whole.replace("format_version = 1", "format_version = 9"), "version 9"),
-        ("other", whole.replace("peg_search.obv", "tower.obv"), "learned for `tower.obv`"),
+        ("other", other.replace("peg_search.obv", "tower.obv"), "learned for `tower.obv`"),
+        ("changed", other.clone(), "before it was changed"),
         ("action", whole.replace(ACTION, "screw"), "has no action `screw`"),
         ("unknown", whole.replace("parameters.pitch", "parameters.tone"), "no parameter `tone`"),
         ("unit", whole.replace("\"mm\"", "\"m\""), "is in `m`"),
@@ -80,6 +84,41 @@ fn a_wrong_parameter_file_is_refused() {
     let twice = ["run", "peg_search.obv", "--parameters", "best", "--parameters", "best"];
     bench.refuses(&twice, &["a second file"]);
     bench.refuses(&["run", "peg_search.obv", "--parameters", "nowhere"], &["nowhere"]);
+}
+
+/// By what it does, and not by what its file is called.
+#[test]
+fn a_parameter_file_belongs_to_a_program() {
+    let bench = Bench::new("learn_belongs");
+    bench.ends(0, &learn(&[]));
+    let source = String::from_utf8(bench.read("peg_search.obv")).expect("text");
+    let check = |file: &str, text: &str| {
+        bench.write(file, text);
+        bench.run(&["check", file, "--parameters", "best"])
+    };
+    let renamed = check("renamed.obv", &source);
+    assert_eq!(renamed.code, 0, "{}", renamed.stderr);
+    let told = check("peg_search.obv", &format!("// What follows is as it was.\n\n{source}"));
+    assert_eq!(told.code, 0, "{}", told.stderr);
+    let another = source.replace("sequence main {", "sequence main {\n  wait 1 s");
+    let changed = check("peg_search.obv", &another);
+    assert!(changed.code == 2 && changed.stderr.contains("before it was changed"));
+    // Who takes the digest out answers for it.
+    let text = String::from_utf8(bench.read("best")).expect("text");
+    let without = text.lines().filter(|line| !line.starts_with("program_digest"));
+    bench.write("best", without.collect::<Vec<_>>().join("\n"));
+    assert_eq!(check("peg_search.obv", &another).code, 0);
+}
+
+#[test]
+fn what_is_learned_replaces_what_was_learned_and_nothing_else() {
+    let bench = Bench::new("learn_again");
+    bench.ends(0, &learn(&[]));
+    bench.ends(0, &learn(&["--seed", "1"]));
+    for text in ["my notes", "format = \"obverse parameters\""] {
+        bench.write("best", text);
+        bench.refuses(&learn(&[]), &["best: ", "not a parameter file", "not overwritten"]);
+    }
 }
 
 #[test]

@@ -64,13 +64,13 @@ fn shards_that_do_not_make_a_campaign_are_refused() {
     }
     let two = bench.read("two");
     bench.write("torn", &two[..two.len() - 9]);
-    let other = String::from_utf8(two).expect("text").replace("\"format\":2", "\"format\":7");
+    let other = String::from_utf8(two).expect("text").replace("\"format\":3", "\"format\":7");
     bench.write("other", other);
     bench.refuses(&["trials", "--merge", "one"], &["shard 2/2 is missing"]);
     bench.refuses(&["trials", "--merge", "one", "one", "two"], &["one: this is shard 1/2"]);
     bench.refuses(&["trials", "--merge", "one", "foreign"], &["foreign: ", "seed is 1, and not 0"]);
     bench.refuses(&["trials", "--merge", "one", "torn"], &["torn: ", "not whole"]);
-    bench.refuses(&["trials", "--merge", "one", "other"], &["other: ", "format 7", "format 2"]);
+    bench.refuses(&["trials", "--merge", "one", "other"], &["other: ", "format 7", "format 3"]);
     bench.refuses(&["trials", "--merge", "one", "sheets.obv"], &["sheets.obv: ", "no file of a"]);
     bench.refuses(&["trials", "--merge", "one", "gone"], &["gone: "]);
     let over = ["trials", "--merge", "one", "two", "--out", "one"];
@@ -103,6 +103,78 @@ fn a_campaign_that_was_stopped_is_gone_on_with() {
     bench.write("again.part", "something else\n");
     let resume = trials("40", &["--out", "again", "--resume"]);
     bench.refuses(&resume, &["again.part: ", "no file of a campaign"]);
+}
+
+#[test]
+fn what_another_seed_changes_is_named_by_the_seed() {
+    let bench = Bench::new("trials_seed");
+    for (shard, seed) in [("1/2", "0"), ("2/2", "1")] {
+        let first = ["trials", "reversal_policy.obv", "--runs", "9", "--strategy", "learned"];
+        let more = ["--learn", "40", "--shard", shard, "--seed", seed, "--out", seed];
+        bench.ends(0, &[first.as_slice(), more.as_slice()].concat());
+    }
+    bench.refuses(&["trials", "--merge", "0", "1"], &["1: ", "its seed is 1, and not 0"]);
+}
+
+#[test]
+fn what_says_how_a_campaign_is_made_says_nothing_of_one_that_is_merged() {
+    let bench = Bench::new("trials_merge_options");
+    bench.ends(0, &trials("9", &["--out", "whole"]));
+    let options: [&[&str]; 13] = [
+        &["--runs", "9"],
+        &["--strategy", "stop"],
+        &["--seed", "0"],
+        &["--cell", "bench_cell.toml"],
+        &["--jobs", "1"],
+        &["--shard", "1/1", "--out", "x"],
+        &["--resume", "--out", "x"],
+        &["--memory", "m"],
+        &["--learn", "1"],
+        &["--parameters", "p"],
+        &["--person", "1"],
+        &["--release", "1"],
+        &["--limit", "1"],
+    ];
+    for option in options {
+        let merge: Vec<&str> =
+            ["trials", "--merge", "whole"].iter().chain(option).copied().collect();
+        bench.refuses(&merge, &["--merge", option[0], "cannot be used with"]);
+    }
+    bench.ends(0, &["trials", "--merge", "whole", "--out", "merged"]);
+}
+
+/// Each is found before anything is made: of the campaigns none could end in an hour.
+#[test]
+fn what_cannot_be_written_is_found_before_the_campaign() {
+    let bench = Bench::new("trials_places");
+    let refuses = |more: &[&str], words: &[&str]| {
+        let first = ["trials", "reversal_policy.obv", "--runs", "10000000", "--learn", "10000000"];
+        let learned = ["--strategy", "learned"];
+        let all: Vec<&str> = first.iter().chain(&learned).chain(more).copied().collect();
+        bench.refuses(&all, words);
+    };
+    refuses(&["--memory", "none/m"], &["none/m: ", "no folder none"]);
+    refuses(&["--memory", "cases"], &["cases: ", "folder"]);
+    refuses(&["--out", "x", "--memory", "x"], &["x: ", "overwrite"]);
+    refuses(&["--plots", "none/x"], &["none/x: ", "cannot be made"]);
+    if cfg!(target_os = "linux") {
+        // A folder in which not even root can make a file.
+        refuses(&["--memory", "/proc/m"], &["/proc/m: cannot be written"]);
+        refuses(&["--out", "/proc/x"], &["/proc/x: cannot be written"]);
+        refuses(&["--plots", "/proc"], &["/proc/endings.svg: cannot be written"]);
+    }
+    bench.write("drawn/success.svg", "<svg>by hand</svg>");
+    refuses(&["--plots", "drawn"], &["drawn/success.svg: ", "not a plot", "not overwritten"]);
+    assert_eq!(bench.read("drawn/success.svg"), b"<svg>by hand</svg>");
+}
+
+#[test]
+fn plots_are_drawn_again_over_plots() {
+    let bench = Bench::new("trials_plots");
+    bench.ends(0, &trials("9", &["--plots", "plots"]));
+    let first = bench.read("plots/makespan.svg");
+    bench.ends(0, &trials("8", &["--plots", "plots"]));
+    assert_ne!(bench.read("plots/makespan.svg"), first);
 }
 
 /// What a full disk does: the system takes so many bytes and no more.

@@ -9,6 +9,7 @@ mod assembly;
 mod console;
 mod example;
 mod grammar;
+mod library;
 mod page;
 mod reader;
 mod words;

@@ -5,7 +5,7 @@ use super::trials::progress::Progress;
 use crate::load::{self, Program};
 use crate::parameters::said;
 use crate::problem::Problem;
-use crate::{Outcome, lacking, report, write};
+use crate::{Outcome, lacking, parameters, report, write};
 use obverse_compiler::{Action, Defaults, Parameter};
 use obverse_learn::search::Confirmed;
 use obverse_learn::{Axis, Budget, Evidence, Learned, ParameterFile, Standing, Value, space};
@@ -65,6 +65,7 @@ pub(crate) struct Arguments {
 pub(crate) fn run(arguments: &Arguments) -> Result {
     check(arguments)?;
     let (program, actions) = load::source(&arguments.program, &Defaults::new())?;
+    let digest = parameters::digest(&arguments.program, program.verified.module())?;
     let action = action_of(&actions, &arguments.action)?;
     let axes = axes(action)?;
     let (cell, file) = load::cell(&program, arguments.cell.as_deref())?;
@@ -79,7 +80,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result {
         .collect::<std::result::Result<Vec<_>, Problem>>()?;
     let learned = search(arguments, &axes, &values, &cases);
     let found = Found { axes, values, learned };
-    let kept = found.file(arguments);
+    let kept = found.file(arguments, digest);
     let out = out(arguments);
     write::file(&out, kept.to_text().as_bytes())?;
     match arguments.json {
@@ -104,7 +105,15 @@ fn check(arguments: &Arguments) -> std::result::Result<(), Problem> {
     load::require_source(&arguments.program, "learned for")?;
     let inputs: Vec<PathBuf> =
         std::iter::once(arguments.program.clone()).chain(arguments.cell.clone()).collect();
-    write::check_text(&out(arguments), "parameter file", &inputs)
+    let out = out(arguments);
+    write::check_text(&out, "parameter file", &inputs)?;
+    let (program, action) = (name_of(arguments), &arguments.action);
+    let what = format!("a parameter file of `{action}` in `{program}`");
+    write::check_own(&out, &what, |text| ParameterFile::is_of(text, &program, action))
+}
+
+fn name_of(arguments: &Arguments) -> String {
+    arguments.program.file_name().unwrap_or_default().to_string_lossy().into_owned()
 }
 
 fn out(arguments: &Arguments) -> PathBuf {
@@ -204,7 +213,7 @@ impl Found {
         self.learned.standings.iter().map(|standing| standing.runs).sum()
     }
 
-    fn file(&self, arguments: &Arguments) -> ParameterFile {
+    fn file(&self, arguments: &Arguments, digest: String) -> ParameterFile {
         let Learned { best, confirmed, defaults, .. } = &self.learned;
         let value = |(axis, value): (&Axis, &f64)| {
             (axis.name.clone(), Value { value: *value, unit: axis.unit.clone() })
@@ -223,8 +232,8 @@ impl Found {
             seed: arguments.seed,
             version: env!("CARGO_PKG_VERSION").to_owned(),
         };
-        let program = arguments.program.file_name().unwrap_or_default().to_string_lossy();
-        ParameterFile::new(&program, &arguments.action, parameters, evidence)
+        let (program, action) = (name_of(arguments), &arguments.action);
+        ParameterFile::new((&program, digest), action, parameters, evidence)
     }
 
     /// The candidates, the best first; then those that stood longest.
@@ -253,7 +262,8 @@ impl Found {
             grouped(self.search_runs()),
         );
         let heads = self.axes.iter().map(|axis| axis.name.clone());
-        let heads = heads.chain(["runs", "chance", "95 % interval", ""].map(str::to_owned));
+        // Of the best of many, and smoothed: bounds to choose by, and no interval of confidence.
+        let heads = heads.chain(["runs", "held for", "bounds", ""].map(str::to_owned));
         let mut rows: Vec<Vec<String>> = vec![heads.collect()];
         let order = self.order();
         let is_shown = |(place, index): &(usize, &usize)| *place < SHOWN || **index == 0;
@@ -264,7 +274,11 @@ impl Found {
         let line = |what: &str, confirmed: &Confirmed| {
             let share = 100.0 * confirmed.successes as f64 / confirmed.runs.max(1) as f64;
             let interval = confirmed.interval().map_or_else(String::new, |interval| {
-                format!(", {:.1} to {:.1} %", 100.0 * interval.low, 100.0 * interval.high)
+                format!(
+                    ", {:.1} to {:.1} % (95 % interval)",
+                    100.0 * interval.low,
+                    100.0 * interval.high
+                )
             });
             let (won, runs) = (grouped(confirmed.successes), grouped(confirmed.runs));
             format!("{what}: {won} of {runs} runs succeed, {share:.1} %{interval}\n")

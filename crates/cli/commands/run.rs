@@ -91,16 +91,20 @@ pub(crate) fn outcome(is_done: bool, recorded: std::result::Result<(), Problem>)
     }
 }
 
-/// The workcell of a run, once it is sure that its tape has a place to go.
+/// The workcell of a run, once it is sure that its tape and its memory have a place to go.
 pub(crate) fn workcell(
     arguments: &Arguments,
     program: &Program,
 ) -> std::result::Result<(Sim, Workcell), Problem> {
     let named = arguments.cell.as_deref();
+    let cell = load::workcell_path(program, named);
+    let mut inputs: Vec<PathBuf> = program.files().into_iter().chain(cell).collect();
     if let Some(tape) = &arguments.tape {
-        let cell = load::workcell_path(program, named);
-        let inputs: Vec<PathBuf> = program.files().into_iter().chain(cell).collect();
         write::check(tape, "tape", &inputs)?;
+        inputs.push(tape.clone());
+    }
+    if let Some(memory) = &arguments.recovering.memory {
+        write::check_text(memory, "memory", &inputs)?;
     }
     let (mut sim, file) = load::workcell(program, named, arguments.seed)?;
     arguments.after.lead(&mut sim, &file)?;

@@ -1,7 +1,7 @@
 //! The file that keeps what was learned: values with their units, and the evidence for them. It
 //! knows nothing of a disk, nor of the program that the values are for.
 
-use serde::{Deserialize, Serialize};
+use serde::{Deserialize, Serialize, Serializer};
 use std::collections::BTreeMap;
 use std::fmt;
 
@@ -9,6 +9,9 @@ use std::fmt;
 const FORMAT: &str = "obverse parameters";
 /// The version of the format.
 const FORMAT_VERSION: u32 = 1;
+
+/// Below this a whole number is written as one.
+const WHOLE_MAX: f64 = 1e15;
 
 const HEAD: &str = "\
 # Parameters of an action, learned in simulation. `obverse run --parameters` with this file puts
@@ -21,10 +24,14 @@ const HEAD: &str = "\
 pub struct ParameterFile {
     format: String,
     format_version: u32,
-    /// The file name of the program.
+    /// The file name of the program, for people.
     pub program: String,
     /// The action.
     pub action: String,
+    /// What tells the program that it was learned for from others, whatever their files are
+    /// called; none where who changed the file has taken it out.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub program_digest: Option<String>,
     /// The values, by parameter.
     pub parameters: BTreeMap<String, Value>,
     /// How it is known that they are good.
@@ -36,9 +43,18 @@ pub struct ParameterFile {
 #[serde(deny_unknown_fields)]
 pub struct Value {
     /// The number.
+    #[serde(serialize_with = "plainly")]
     pub value: f64,
     /// Its unit; empty for a number without one.
     pub unit: String,
+}
+
+/// A number as people write it: 3, and not 3.0.
+fn plainly<S: Serializer>(value: &f64, serializer: S) -> Result<S::Ok, S::Error> {
+    match value.fract() == 0.0 && value.abs() < WHOLE_MAX {
+        true => serializer.serialize_i64(*value as i64),
+        false => serializer.serialize_f64(*value),
+    }
 }
 
 /// How it is known that parameters are good.
@@ -103,14 +119,27 @@ impl ParameterFile {
     /// What is kept of these values.
     #[must_use]
     pub fn new(
-        program: &str,
+        (program, program_digest): (&str, String),
         action: &str,
         parameters: BTreeMap<String, Value>,
         evidence: Evidence,
     ) -> Self {
         let (program, action) = (program.to_owned(), action.to_owned());
+        let program_digest = Some(program_digest);
         let (format, format_version) = (FORMAT.to_owned(), FORMAT_VERSION);
-        Self { format, format_version, program, action, parameters, evidence }
+        Self { format, format_version, program, action, program_digest, parameters, evidence }
+    }
+
+    /// Whether a text is such a file for this action of this program, be it torn or of another
+    /// version: what learning the same again may replace.
+    #[must_use]
+    pub fn is_of(text: &str, program: &str, action: &str) -> bool {
+        match Self::from_text(text) {
+            Ok(file) => file.program == program && file.action == action,
+            Err(FileError::Foreign) => false,
+            Err(FileError::Malformed(_)) => text.starts_with(HEAD),
+            Err(FileError::Version(_) | FileError::NotFinite(_)) => true,
+        }
     }
 
     /// The text of the file.
@@ -173,13 +202,23 @@ mod tests {
             seed: 7,
             version: "0.1.0".to_owned(),
         };
-        ParameterFile::new("a.obv", "insert", parameters, evidence)
+        ParameterFile::new(("a.obv", "1f".to_owned()), "insert", parameters, evidence)
     }
 
     #[test]
     fn what_is_written_is_read() {
         let text = file().to_text();
         assert_eq!(ParameterFile::from_text(&text), Ok(file()), "{text}");
+        assert!(text.contains("value = 3\n") && text.contains("value = 12.5\n"), "{text}");
+    }
+
+    #[test]
+    fn what_learning_again_may_replace_is_of_the_same_action() {
+        let text = file().to_text();
+        let is_of = ParameterFile::is_of;
+        assert!(is_of(&text, "a.obv", "insert") && is_of(&text[..400], "a.obv", "insert"));
+        assert!(!is_of(&text, "b.obv", "insert") && !is_of(&text, "a.obv", "pick"));
+        assert!(!is_of("[arm]", "a.obv", "insert") && !is_of("", "a.obv", "insert"));
     }
 
     #[test]

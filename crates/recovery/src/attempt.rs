@@ -26,6 +26,7 @@ impl<C: Workcell> Run<'_, '_, '_, C> {
         let planned = if let Plan::Back { actions, .. } = plan { actions } else { 0 };
         let search = incident.next_search(&self.trail, planned);
         let policy = reversal(self.declared(incident)).filter(|_| planned > 0);
+        let is_anew = search.is_anew || matches!(plan, Plan::Restart);
         let seed = self.recovery.seed;
         let change = policy
             .and_then(|policy| change::of_incident(policy, incident, &self.trail, search, seed));
@@ -36,6 +37,9 @@ impl<C: Workcell> Run<'_, '_, '_, C> {
         };
         if let Err(why @ GiveUp::NoWayBack { .. }) = done {
             return Err(why);
+        }
+        if is_anew {
+            self.settle_passed();
         }
         self.attempts += 1;
         let actions = done.unwrap_or(planned);

@@ -103,6 +103,7 @@ pub fn recover<C: Workcell>(
         teller,
         trail,
         open: Vec::new(),
+        passed: Vec::new(),
         given_up: Vec::new(),
         furthest: 0,
         attempts: 0,
@@ -124,6 +125,9 @@ pub(crate) struct Run<'r, 'p, 'o, C> {
     pub(crate) trail: Trail<'p>,
     /// The incidents that are open, innermost last.
     pub(crate) open: Vec<Incident>,
+    /// Incidents that the run got past on its way forward again for another that is open still. If
+    /// that fails and leads back over them, the world being as it was, they were not got past.
+    passed: Vec<Incident>,
     /// Errors that were given up where the run goes on without going back.
     given_up: Vec<GivenUp>,
     /// The most actions that the run has ever begun.
@@ -303,7 +307,8 @@ impl<'p, C: Workcell> Run<'_, 'p, '_, C> {
         }
     }
 
-    /// The incident of an error that is due: the open one at the same place, or a new one.
+    /// The incident of an error that is due: the open one at the same place, one that was got past
+    /// in vain, or a new one.
     fn incident(&mut self, error: ErrorId, pc: u32) -> usize {
         let branches = self.machine.state().branches();
         let newest = self.trail.newest_of(&branches);
@@ -313,11 +318,17 @@ impl<'p, C: Workcell> Run<'_, 'p, '_, C> {
             self.open[index].number = number;
             return index;
         }
+        let is_again = |passed: &Incident| passed.is_again(error, pc, entry);
+        if let Some(index) = self.passed.iter().position(is_again) {
+            let passed = self.passed.remove(index);
+            self.open.push(Incident { number, branches, outcome: None, ..passed });
+            return self.open.len() - 1;
+        }
         self.open.push(Incident {
             error,
             pc,
             entry,
-            branches: branches.clone(),
+            branches,
             is_in_cleanup: self.machine.is_cleaning_up(),
             place: place(self.module(), newest.map_or(pc, |action| action.pc)),
             number,
@@ -524,14 +535,33 @@ impl<'p, C: Workcell> Run<'_, 'p, '_, C> {
 
     fn close(&mut self, mut incident: Incident, outcome: Outcome) {
         incident.outcome = Some((outcome, self.cell.now_s()));
+        if outcome == Outcome::Recovered {
+            self.say(&Step::Recovered { incident: &incident });
+        }
+        if outcome == Outcome::Recovered && !self.open.is_empty() {
+            self.passed.push(incident);
+            return;
+        }
+        if self.open.is_empty() {
+            self.settle_passed();
+        }
+        self.settle(incident);
+    }
+
+    /// What was got past will not come again: what was done anew since has changed the world, or
+    /// nothing is open that could lead back over it.
+    pub(crate) fn settle_passed(&mut self) {
+        for incident in std::mem::take(&mut self.passed) {
+            self.settle(incident);
+        }
+    }
+
+    fn settle(&mut self, incident: Incident) {
         let depths = incident.depths();
         if self.recovery.remembers && !depths.contains(&0) {
             let error = &self.declared(&incident).name;
-            let was_enough = outcome == Outcome::Recovered;
+            let was_enough = matches!(incident.outcome, Some((Outcome::Recovered, _)));
             self.recovery.memory.learn(error, &incident.place, &depths, was_enough);
-        }
-        if outcome == Outcome::Recovered {
-            self.say(&Step::Recovered { incident: &incident });
         }
         self.recovery.incidents.push(incident);
     }

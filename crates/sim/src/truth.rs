@@ -40,8 +40,8 @@ pub enum CauseKind {
     Knocked,
     /// An item fell.
     Dropped,
-    /// An item is not in the cell.
-    Gone,
+    /// An item is not in the cell: a feeder has not brought it yet, or it fell out of reach.
+    Absent,
     /// A feeder had nothing when it was asked last.
     Empty,
     /// An output is not at the level it was set to.
@@ -66,7 +66,7 @@ impl CauseKind {
             Self::Slipped => "slipped",
             Self::Knocked => "knocked",
             Self::Dropped => "dropped",
-            Self::Gone => "gone",
+            Self::Absent => "absent",
             Self::Empty => "empty",
             Self::OutputStuck => "output_stuck",
             Self::InputStuck => "input_stuck",
@@ -140,7 +140,7 @@ impl Sim {
         match self.items.rest(index) {
             Rest::Knocked => causes.push(Cause::new(CauseKind::Knocked, name)),
             Rest::Dropped => causes.push(Cause::new(CauseKind::Dropped, name)),
-            Rest::Absent => causes.push(Cause::new(CauseKind::Gone, name)),
+            Rest::Absent => causes.push(Cause::new(CauseKind::Absent, name)),
             Rest::Standing => {}
         }
         if self.items.held() == Some(index) {

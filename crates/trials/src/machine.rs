@@ -57,14 +57,19 @@ impl Case for MachineCase<'_> {
 
     fn learn(&self, memory: &mut Memory, outcome: &Outcome) {
         for incident in &outcome.incidents {
-            // In place nothing was gone back by, so that nothing is learned of how far is enough.
-            if !incident.depths.contains(&0) {
-                let depths: Vec<usize> =
-                    incident.depths.iter().map(|depth| *depth as usize).collect();
-                memory.learn(&incident.error, &incident.place, &depths, incident.recovered);
+            if let Some((depths, is_enough)) = lesson(incident) {
+                memory.learn(&incident.error, &incident.place, &depths, is_enough);
             }
         }
     }
+}
+
+/// What an incident teaches of how far is enough, if anything: in place nothing was gone back by,
+/// and what the program itself put right afterwards no depth was enough for.
+fn lesson(incident: &Incident) -> Option<(Vec<usize>, bool)> {
+    let depths: Vec<usize> = incident.depths.iter().map(|depth| *depth as usize).collect();
+    let is_enough = incident.recovered && !incident.otherwise;
+    (!depths.contains(&0)).then_some((depths, is_enough))
 }
 
 /// Where one thread runs machines.
@@ -210,6 +215,28 @@ fn incident(
         place: found.place.clone(),
         depths: found.attempts.iter().map(|attempt| attempt.actions as u32).collect(),
         recovered: is_recovered || put_right,
+        otherwise: !is_recovered && put_right,
         cause,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_the_program_puts_right_itself_teaches_that_no_depth_was_enough() {
+        let of = |depths: &[u32], recovered, otherwise| Incident {
+            error: "jam".to_owned(),
+            place: "here".to_owned(),
+            depths: depths.to_vec(),
+            recovered,
+            otherwise,
+            cause: None,
+        };
+        assert_eq!(lesson(&of(&[1, 3], true, false)), Some((vec![1, 3], true)));
+        assert_eq!(lesson(&of(&[1, 3], true, true)), Some((vec![1, 3], false)));
+        assert_eq!(lesson(&of(&[1, 3], false, false)), Some((vec![1, 3], false)));
+        assert_eq!(lesson(&of(&[0, 0], true, false)), None);
     }
 }

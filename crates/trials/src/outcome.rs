@@ -34,6 +34,10 @@ pub struct Incident {
     pub depths: Vec<u32>,
     /// Whether the program went on past that place afterwards.
     pub recovered: bool,
+    /// Whether that was by what the program does where going back has been given up: no depth of
+    /// going back was enough then.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub otherwise: bool,
     /// What truly was the matter, where the workcell can tell.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub cause: Option<String>,

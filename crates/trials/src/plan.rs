@@ -24,6 +24,9 @@ pub struct Plan {
     /// How many goals of the workcell file a finished assembly is judged by; with none, what the
     /// program itself believes is all that is known.
     pub goals: u32,
+    /// How many of the program's errors have a sequence written against them; with none, the
+    /// strategy that goes by them does what stopping does.
+    pub sequences: u32,
     /// A digest of what the strategy that learns goes by; none where it is not compared.
     pub memory_digest: Option<String>,
     /// The strategies, in the order of the tables.
@@ -83,7 +86,6 @@ impl Plan {
             ("program", self.program.clone(), other.program.clone()),
             ("compiled program", self.program_digest.clone(), other.program_digest.clone()),
             ("workcell", self.cell_digest.clone(), other.cell_digest.clone()),
-            ("memory", digest(&self.memory_digest), digest(&other.memory_digest)),
             ("list of strategies", list(self), list(other)),
             ("seed", self.seed.to_string(), other.seed.to_string()),
             ("number of runs", self.runs.to_string(), other.runs.to_string()),
@@ -94,6 +96,8 @@ impl Plan {
                 self.instructions.to_string(),
                 other.instructions.to_string(),
             ),
+            // Last, since what is learned follows from most of the others.
+            ("memory", digest(&self.memory_digest), digest(&other.memory_digest)),
         ];
         let (what, mine, theirs) = rows.into_iter().find(|(_, mine, theirs)| mine != theirs)?;
         Some(format!("its {what} is {theirs}, and not {mine}"))

@@ -3,7 +3,7 @@
 
 use crate::plan::Plan;
 use crate::strategy::Strategy;
-use crate::svg::{Anchor, Svg};
+use crate::svg::{Anchor, MARK, Svg};
 use crate::table::grouped;
 use crate::tally::{Errors, Summary, Tally};
 use std::ops::Range;
@@ -17,6 +17,15 @@ pub struct Plot {
     pub svg: String,
 }
 
+/// The names of the files of all plots.
+pub const NAMES: [&str; 4] = ["endings.svg", "success.svg", "makespan.svg", "depth.svg"];
+
+/// Whether a text is a plot of a campaign.
+#[must_use]
+pub fn is_plot(text: &str) -> bool {
+    text.contains(MARK)
+}
+
 /// All plots of a campaign.
 #[must_use]
 pub fn plots(plan: &Plan, summary: &Summary) -> Vec<Plot> {
@@ -26,11 +35,12 @@ pub fn plots(plan: &Plan, summary: &Summary) -> Vec<Plot> {
         grouped(plan.runs),
         plan.seed
     );
+    let [of_endings, of_success, of_makespan, of_depth] = NAMES;
     vec![
-        Plot { name: "endings.svg", svg: endings(summary, &under) },
-        Plot { name: "success.svg", svg: success(summary, &under) },
-        Plot { name: "makespan.svg", svg: makespan(summary, &under) },
-        Plot { name: "depth.svg", svg: depth(summary, &under) },
+        Plot { name: of_endings, svg: endings(summary, &under) },
+        Plot { name: of_success, svg: success(summary, &under) },
+        Plot { name: of_makespan, svg: makespan(summary, &under) },
+        Plot { name: of_depth, svg: depth(summary, &under) },
     ]
 }
 

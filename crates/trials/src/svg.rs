@@ -11,6 +11,9 @@ pub(crate) enum Anchor {
     End,
 }
 
+/// What stands in every drawing, so that one is known as such and may be replaced by another.
+pub(crate) const MARK: &str = "<!-- drawn by obverse trials -->";
+
 /// A drawing.
 pub(crate) struct Svg {
     width: f64,
@@ -77,7 +80,7 @@ impl Svg {
         format!(
             "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{width}\" height=\"{height}\" \
              viewBox=\"0 0 {width} {height}\" \
-             font-family=\"Helvetica, Arial, 'DejaVu Sans', sans-serif\">\n{body}</svg>\n"
+             font-family=\"Helvetica, Arial, 'DejaVu Sans', sans-serif\">\n{MARK}\n{body}</svg>\n"
         )
     }
 }

@@ -1,11 +1,11 @@
-//! Counting what came of a campaign: by strategy, and by strategy and error.
+//! Counting what came of a campaign: by strategy, by strategy and error, and by assembly.
 
 use crate::outcome::{Ending, Incident, Record};
 use crate::plan::Plan;
 use crate::statistics::{Interval, mean, mean_interval, quantile, wilson};
 use crate::strategy::Strategy;
 use serde_json::{Map, Value, json};
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 /// What came of a campaign.
 #[derive(Clone, Debug, PartialEq)]
@@ -14,6 +14,8 @@ pub struct Summary {
     pub strategies: Vec<Tally>,
     /// Whether assemblies were judged by goals, and not by what the program believes.
     pub is_judged: bool,
+    /// Whether an error of the program has a sequence written against it.
+    pub has_sequences: bool,
 }
 
 /// What came of all assemblies by a strategy.
@@ -33,6 +35,8 @@ pub struct Tally {
     pub to_a_person: u64,
     /// How often something was tried again.
     pub attempts: u64,
+    /// How many assemblies had so many errors each.
+    pub by_errors: BTreeMap<u64, u64>,
     /// All errors together.
     pub all: Errors,
     /// Each kind of error by itself.
@@ -57,6 +61,8 @@ pub struct Kind {
 pub struct Errors {
     /// How many came up.
     pub count: u64,
+    /// In how many assemblies; one may have several.
+    pub assemblies: u64,
     /// After how many the program went on, and came to an assembly that is as it should be.
     pub recovered: u64,
     /// How many of those were recovered by going back how many actions, at the last attempt.
@@ -68,7 +74,7 @@ impl Errors {
         self.count += 1;
         if is_put_right {
             self.recovered += 1;
-            if let Some(depth) = incident.depths.last() {
+            if let Some(depth) = incident.depths.last().filter(|_| !incident.otherwise) {
                 *self.depths.entry(*depth).or_default() += 1;
             }
         }
@@ -101,6 +107,7 @@ impl Errors {
             self.depths.iter().map(|(depth, count)| (depth.to_string(), json!(count))).collect();
         let fields = [
             ("errors", json!(self.count)),
+            ("assemblies_with_errors", json!(self.assemblies)),
             ("recovered", json!(self.recovered)),
             ("recovered_share", json!(self.share())),
             ("recovered_share_low", json!(interval.map(|interval| interval.low))),
@@ -119,7 +126,7 @@ pub fn summary(plan: &Plan, records: &[Record]) -> Summary {
         tally(*strategy, records.iter().filter(|record| record.strategy == *strategy))
     };
     let strategies = plan.strategies.iter().map(tally).collect();
-    Summary { strategies, is_judged: plan.goals > 0 }
+    Summary { strategies, is_judged: plan.goals > 0, has_sequences: plan.sequences > 0 }
 }
 
 fn tally<'r>(strategy: Strategy, records: impl Iterator<Item = &'r Record>) -> Tally {
@@ -131,6 +138,7 @@ fn tally<'r>(strategy: Strategy, records: impl Iterator<Item = &'r Record>) -> T
         misses: BTreeMap::new(),
         to_a_person: 0,
         attempts: 0,
+        by_errors: BTreeMap::new(),
         all: Errors::default(),
         kinds: Vec::new(),
         makespans_s: Vec::new(),
@@ -139,6 +147,7 @@ fn tally<'r>(strategy: Strategy, records: impl Iterator<Item = &'r Record>) -> T
     for Record { outcome, .. } in records {
         tally.runs += 1;
         tally.in_error += u64::from(!outcome.incidents.is_empty());
+        *tally.by_errors.entry(outcome.incidents.len() as u64).or_default() += 1;
         if outcome.ending == Ending::FalseSuccess {
             tally.false_successes += 1;
             for miss in outcome.why.iter().flat_map(|why| why.split("; ")) {
@@ -148,11 +157,14 @@ fn tally<'r>(strategy: Strategy, records: impl Iterator<Item = &'r Record>) -> T
         tally.to_a_person += u64::from(outcome.takes_a_person());
         tally.attempts += u64::from(outcome.attempts);
         tally.makespans_s.push(outcome.total_s());
+        let mut seen: BTreeSet<(&str, Option<&str>)> = BTreeSet::new();
         for incident in &outcome.incidents {
             let is_put_right = outcome.puts_right(incident);
             let mut add = |cause| {
-                let kind = kinds.entry((incident.error.as_str(), cause)).or_default();
+                let key = (incident.error.as_str(), cause);
+                let kind = kinds.entry(key).or_default();
                 kind.add(incident, is_put_right);
+                kind.assemblies += u64::from(seen.insert(key));
             };
             add(None);
             if let Some(cause) = &incident.cause {
@@ -161,6 +173,7 @@ fn tally<'r>(strategy: Strategy, records: impl Iterator<Item = &'r Record>) -> T
             tally.all.add(incident, is_put_right);
         }
     }
+    tally.all.assemblies = tally.in_error;
     tally.makespans_s.sort_by(f64::total_cmp);
     let kind = |((error, cause), errors): ((&str, Option<&str>), Errors)| Kind {
         error: error.to_owned(),
@@ -207,6 +220,8 @@ impl Tally {
             ("makespan_p95_s", json!(self.makespan_quantile_s(0.95))),
         ];
         object.extend(fields.map(|(name, value)| (name.to_owned(), value)));
+        let by_errors = self.by_errors.iter().map(|(errors, n)| (errors.to_string(), json!(n)));
+        object.insert("assemblies_by_errors".to_owned(), Value::Object(by_errors.collect()));
         object.extend(self.all.to_json());
         let kind = |kind: &Kind| {
             let mut object = Map::new();

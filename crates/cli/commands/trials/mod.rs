@@ -30,7 +30,7 @@ const MAX_PERSON_S: f64 = 7.0 * 86_400.0;
 #[derive(clap::Args)]
 pub(crate) struct Arguments {
     /// The program: source, assembly text or module.
-    #[arg(required_unless_present = "merge", conflicts_with = "merge")]
+    #[arg(required_unless_present = "merge")]
     program: Option<PathBuf>,
     /// How many assemblies are made by each strategy.
     #[arg(long, default_value_t = 1000, value_name = "N")]
@@ -57,8 +57,12 @@ pub(crate) struct Arguments {
     /// Go on with what was stopped: what was done is in FILE.part.
     #[arg(long, requires = "out")]
     resume: bool,
-    /// Put the files of all shards together, and report on the whole.
-    #[arg(long, value_name = "FILES", num_args = 1..)]
+    /// Put the files of all shards together, and report on the whole; what was made is said by
+    /// them.
+    #[arg(long, value_name = "FILES", num_args = 1.., conflicts_with_all = [
+        "program", "runs", "strategy", "seed", "cell", "jobs", "shard", "resume", "memory",
+        "learn", "parameters", "person", "release", "limit",
+    ])]
     merge: Vec<PathBuf>,
     /// Write plots to a folder, as SVG.
     #[arg(long, value_name = "DIR")]
@@ -87,9 +91,6 @@ pub(crate) struct Arguments {
 }
 
 pub(crate) fn run(arguments: &Arguments) -> Result {
-    if let Some(folder) = &arguments.plots {
-        make_folder(folder)?;
-    }
     let part = match &arguments.program {
         Some(program) => campaign(arguments, program)?,
         None => merged(arguments)?,
@@ -119,11 +120,9 @@ fn campaign(arguments: &Arguments, path: &Path) -> std::result::Result<Part, Pro
     };
     let case = MachineCase::new(&program.verified, &cell, terms)
         .map_err(|errors| Problem::several(lacking::messages(&program, &file, &errors)))?;
-    if let Some(out) = &arguments.out {
-        let cell = load::workcell_path(&program, arguments.cell.as_deref());
-        let inputs: Vec<PathBuf> = program.files().into_iter().chain(cell).collect();
-        journal::check(out, &inputs, arguments.resume)?;
-    }
+    let cell_path = load::workcell_path(&program, arguments.cell.as_deref());
+    let parameters = arguments.parameters.parameters.iter().cloned();
+    check_outputs(arguments, program.files().into_iter().chain(cell_path).chain(parameters))?;
     let mut plan = plan(arguments, &program, (&cell, file.text.as_deref()), strategies)?;
     let memory = match plan.strategies.contains(&Strategy::Learned) {
         true => {
@@ -201,6 +200,7 @@ fn plan(
         program_digest: digest(&module),
         cell_digest: digest(cell_text.unwrap_or_default().as_bytes()),
         goals: u32::try_from(cell.goals.len()).unwrap_or(u32::MAX),
+        sequences: sequences(program),
         memory_digest: None,
         strategies,
         seed: arguments.seed,
@@ -209,6 +209,12 @@ fn plan(
         releases: arguments.release,
         instructions: arguments.limit,
     })
+}
+
+/// How many errors of a program have a sequence written against them.
+fn sequences(program: &Program) -> u32 {
+    let errors = program.verified.module().errors.iter();
+    errors.map(|error| u32::from(obverse_recovery::sequence(error).is_some())).sum()
 }
 
 fn digest(bytes: &[u8]) -> String {
@@ -240,9 +246,7 @@ fn learned(
 
 /// The whole campaign of the files of its shards.
 fn merged(arguments: &Arguments) -> std::result::Result<Part, Problem> {
-    if let Some(out) = &arguments.out {
-        journal::check(out, &arguments.merge, false)?;
-    }
+    check_outputs(arguments, arguments.merge.iter().cloned())?;
     let read = |path: &PathBuf| {
         let bytes = files::read_at_most(path, MAX_SHARD_BYTES)
             .map_err(|why| Problem::of_file(path, why))?;
@@ -257,6 +261,31 @@ fn merged(arguments: &Arguments) -> std::result::Result<Part, Problem> {
         journal.finish()?;
     }
     Ok(part)
+}
+
+/// Check that all that will be written can be, before anything is made; and make the folder for
+/// plots.
+fn check_outputs(
+    arguments: &Arguments,
+    inputs: impl Iterator<Item = PathBuf>,
+) -> std::result::Result<(), Problem> {
+    let mut inputs: Vec<PathBuf> = inputs.collect();
+    if let Some(out) = &arguments.out {
+        journal::check(out, &inputs, arguments.resume)?;
+        inputs.push(out.clone());
+    }
+    if let Some(memory) = &arguments.memory {
+        write::check_text(memory, "memory", &inputs)?;
+        inputs.push(memory.clone());
+    }
+    let Some(folder) = &arguments.plots else { return Ok(()) };
+    make_folder(folder)?;
+    for name in plots::NAMES {
+        let path = folder.join(name);
+        write::check_text(&path, "plot", &inputs)?;
+        write::check_own(&path, "a plot of a campaign", plots::is_plot)?;
+    }
+    Ok(())
 }
 
 fn make_folder(folder: &Path) -> std::result::Result<(), Problem> {

@@ -7,13 +7,13 @@ use super::file::{
     SpeedFile, SpeedsFile, ToolFile,
 };
 use super::number::{CoordinateMm, JointRad, MUST_BE_FROM, TurnDeg};
-use super::seat;
 use super::uncertainty_build::{centres, falling};
 use super::{
     ArmSpec, Cell, CellCode, CellError, ContactSpec, DEFAULT_SPEEDS, FILE_BYTES_MAX, FixtureSpec,
     ForceSensorSpec, GripperSpec, HoleSpec, InputRule, ItemSpec, OffsetSpec, Part, PegSpec, Shape,
     SpeedSpec, ToolSpec,
 };
+use super::{key, seat};
 use obverse_geometry::{JointConfiguration, Pose};
 use std::f64::consts::PI;
 use toml::Spanned;
@@ -45,7 +45,8 @@ pub(super) fn parse(text: &str) -> Result<Cell, CellError> {
     }
     let file: CellFile = toml::from_str(text).map_err(|error| {
         let byte = error.span().map_or(0, |span| span.start);
-        CellError::at(text, byte, error.message()).of(kind_of(text, error.message()))
+        let code = kind_of(text, error.message());
+        CellError::at(text, byte, said(text, byte, error.message(), code)).of(code)
     })?;
     Builder { text }.cell(&file)
 }
@@ -58,6 +59,15 @@ fn kind_of(text: &str, message: &str) -> CellCode {
         CellCode::Range
     } else {
         CellCode::Key
+    }
+}
+
+/// What the reader says, with the key that it is about: of a value it says none.
+fn said(text: &str, byte: usize, message: &str, code: CellCode) -> String {
+    let names_key = message.contains("field `") || code == CellCode::Toml;
+    match key::key_of(text, byte).filter(|_| !names_key) {
+        Some(key) => format!("`{key}`: {message}"),
+        None => message.to_owned(),
     }
 }
 
@@ -338,6 +348,7 @@ impl Builder<'_> {
             let fixture = self.fixture(file, tcp, &fixtures)?;
             fixtures.push(fixture);
         }
+        self.apart(files, &fixtures)?;
         Ok(fixtures)
     }
 

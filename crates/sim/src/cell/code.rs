@@ -53,6 +53,18 @@ obverse_codes::table! {
                [-170, 170], [-170, 170], [-170, 170], [-170, 170]]"
         right "[arm]\nhome_rad = [0, -1.0, 1.5, 0, 0, 0]\nlimits_deg = [[-170, 170], [-60, 60], \
                [-170, 170], [-170, 170], [-170, 170], [-170, 170]]"
+    Overlap "C0108" "two things in one place"
+        why "Fixtures may touch, and what stands on one may lie on it; their bodies cannot be in \
+             one place, nor two holes of a fixture. It is looked at where things should stand, \
+             without their offsets. A body that is made of several parts belongs into one fixture."
+        wrong "[arm]\nhome_rad = [0, -1.5, 1.5, 0, 0, 0]\n[[fixture]]\nname = \"table\"\nplace \
+               = { xyz_mm = [0, 0, -20] }\nbody = [{ cuboid_mm = [900, 900, 40] }]\n\
+               [[fixture]]\nname = \"nest\"\nplace = { xyz_mm = [300, 0, 0] }\nbody = [{ \
+               cuboid_mm = [60, 60, 20] }]"
+        right "[arm]\nhome_rad = [0, -1.5, 1.5, 0, 0, 0]\n[[fixture]]\nname = \"table\"\nplace \
+               = { xyz_mm = [0, 0, -20] }\nbody = [{ cuboid_mm = [900, 900, 40] }]\n\
+               [[fixture]]\nname = \"nest\"\nplace = { xyz_mm = [300, 0, 10] }\nbody = [{ \
+               cuboid_mm = [60, 60, 20] }]"
     NoItem "C0201" "an item that the workcell has not"
         why "A program that declares an item runs in a workcell that has one of this name: a table \
              `[[item]]`. The example is for a program with `item vial { .. }`."

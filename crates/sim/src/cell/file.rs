@@ -42,11 +42,15 @@ pub(super) struct CellFile {
     pub(super) force_sensor: ForceSensorFile,
     #[serde(default)]
     pub(super) feeder: Vec<FeederFile>,
-    #[serde(default)]
-    pub(super) chance: ChanceFile,
+    #[serde(default = "nothing_by_chance")]
+    pub(super) chance: Spanned<ChanceFile>,
     pub(super) falling: Option<FallingFile>,
     #[serde(default)]
     pub(super) goal: Vec<GoalFile>,
+}
+
+fn nothing_by_chance() -> Spanned<ChanceFile> {
+    Spanned::new(0..0, ChanceFile::default())
 }
 
 #[derive(Deserialize)]

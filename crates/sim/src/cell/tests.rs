@@ -241,6 +241,88 @@ fn probabilities_and_spreads_out_of_range_are_refused_in_place() {
 }
 
 #[test]
+fn chances_that_end_a_motion_are_one_at_most() {
+    let chance = "[chance]\nstops_short = 0.5\nprotective_stop = 0.4\nemergency_stop = ";
+    assert!(Cell::parse(&format!("{LEAST}{chance}0.1")).is_ok());
+    expect(&format!("{chance}0.2"), 1, 1, "add up to 1.1000");
+    let thirds = "[chance]\nstops_short = 0.1\nprotective_stop = 0.2\nemergency_stop = 0.7";
+    assert!(Cell::parse(&format!("{LEAST}{thirds}")).is_ok(), "0.1 + 0.2 + 0.7 > 1 in binary");
+}
+
+#[test]
+fn what_the_reader_says_of_a_value_names_its_key() {
+    let place = "[[fixture]]\nname = \"f\"\nplace = { xyz_mm = [0, 0] }";
+    expect(place, 3, 20, "`xyz_mm`: ");
+    let body = "[[fixture]]\nname = \"f\"\nplace = {}\nbody = [{ cuboid_mm = [1, -2, 3] }]";
+    expect(body, 4, 23, "`cuboid_mm`: -2");
+    expect("[outputs]\ncount = \"many\"", 2, 9, "`count`: ");
+    let unknown = error("[contact]\nfriction = 0.1\nfrictoin = 0.1");
+    assert!(unknown.message.starts_with("unknown field `frictoin`"), "{unknown}");
+}
+
+/// Two fixtures of which the second is moved from where it only touches the first.
+#[test]
+fn fixtures_touch_and_do_not_overlap() {
+    let fixtures = |body: &str, place: &str| {
+        format!(
+            "[[fixture]]\nname = \"table\"\nplace = {{ xyz_mm = [400, 0, -20] }}\n\
+             body = [{{ cuboid_mm = [800, 800, 40] }}]\n\
+             [[fixture]]\nname = \"nest\"\nplace = {{ xyz_mm = {place} }}\nbody = [{body}]"
+        )
+    };
+    let parse = |text: &str| Cell::parse(&format!("{LEAST}{text}"));
+    let bodies =
+        ["{ cuboid_mm = [60, 60, 20] }", "{ cylinder = { diameter_mm = 60, length_mm = 20 } }"];
+    for body in bodies {
+        for apart in ["[300, 0, 10]", "[830, 0, -20]", "[300, 0, 500]", "[300, -430, -10]"] {
+            assert!(parse(&fixtures(body, apart)).is_ok(), "{body} at {apart}");
+        }
+        for within in ["[300, 0, 9.9]", "[829, 0, -20]", "[300, 0, -20]", "[400, 0, -20]"] {
+            let error = parse(&fixtures(body, within)).expect_err(within);
+            assert_eq!((error.line, error.column, error.code), (8, 8, CellCode::Overlap));
+            assert!(error.message.contains("`table` and `nest` overlap"), "{error}");
+        }
+    }
+    // The parts of one body may.
+    let both = "{ cuboid_mm = [60, 60, 20] }, { cuboid_mm = [20, 90, 20] }";
+    assert!(parse(&fixtures(both, "[300, 0, 10]")).is_ok());
+}
+
+#[test]
+fn holes_do_not_run_into_each_other() {
+    let holes = |second: &str| {
+        format!(
+            "[[fixture]]\nname = \"f\"\nplace = {{}}\nbody = [{{ cuboid_mm = [50, 50, 40], at = \
+             {{ xyz_mm = [0, 0, 20] }} }}]\nhole = [\n{{ diameter_mm = 10, depth_mm = 30 }},\n\
+             {{ mouth = {{ {second} }}, diameter_mm = 8, depth_mm = 22 }},\n]"
+        )
+    };
+    let beside = "xyz_mm = [25, 0, 35], rotation_vector_deg = [0, -90, 0]";
+    for good in ["xyz_mm = [9, 0, 0]", beside] {
+        let parsed = Cell::parse(&format!("{LEAST}{}", holes(good)));
+        assert!(parsed.is_ok(), "{good}: {parsed:?}");
+    }
+    for bad in ["xyz_mm = [8, 0, 0]", "xyz_mm = [0, 0, 0]", &beside.replace("35", "20")] {
+        let error = error(&holes(bad));
+        let place = (error.line, error.column, error.code);
+        assert_eq!(place, (9, 1, CellCode::Overlap), "{bad}: {error}");
+        assert!(error.message.contains("`hole` 1 and 2 of `f`"), "{error}");
+    }
+}
+
+/// A thousand fixtures of many parts, all in one stripe.
+#[test]
+fn looking_for_what_overlaps_ends() {
+    let parts = "{cuboid_mm=[9,9,1]},".repeat(40);
+    let fixture = |number: usize| {
+        let place = format!("{{xyz_mm=[0,0,{}]}}", number * 2);
+        format!("[[fixture]]\nname=\"{number}\"\nplace={place}\nbody=[{parts}]\n")
+    };
+    let text: String = (0..1000).map(fixture).collect();
+    assert!(Cell::parse(&format!("{LEAST}{text}")).is_ok());
+}
+
+#[test]
 fn a_slip_is_of_something() {
     let slip = |slip: &str| format!("{GRIPPER}slip = {slip}");
     expect_with(&slip("{ probability = 0.1 }"), 8, "`offset`");

@@ -4,7 +4,7 @@
 use super::build::{Builder, MM, level, offset};
 use super::file::CellFile;
 use super::number::Probability;
-use super::uncertainty_file::{CentresFile, FallingFile, FeederFile, SlipFile};
+use super::uncertainty_file::{CentresFile, ChanceFile, FallingFile, FeederFile, SlipFile};
 use super::{
     CellCode, CellError, ChanceSpec, FallSpec, FeederSpec, InputFlaw, InputRule, ItemSpec,
     OffsetSpec, SlipSpec,
@@ -16,6 +16,8 @@ const FEEDERS_MAX: usize = 64;
 const NEAR_M: f64 = 0.01;
 const SUPPORT_M: f64 = 0.005;
 const KNOCK_N: f64 = 20.0;
+/// By how much probabilities may add up to more than 1, since they are rounded.
+const SUM_EPSILON: f64 = 1e-9;
 
 impl Builder<'_> {
     pub(super) fn slip(&self, file: &Spanned<SlipFile>) -> Result<SlipSpec, CellError> {
@@ -131,10 +133,12 @@ impl Builder<'_> {
 
     pub(super) fn chance(&self, file: &CellFile, outputs: u16) -> Result<ChanceSpec, CellError> {
         let of = |probability: Option<Probability>| probability.map_or(0.0, |p| p.0);
+        self.at_most_one(&file.chance)?;
+        let file_chance = file.chance.get_ref();
         let mut chance = ChanceSpec {
-            stops_short: of(file.chance.stops_short),
-            protective_stop: of(file.chance.protective_stop),
-            emergency_stop: of(file.chance.emergency_stop),
+            stops_short: of(file_chance.stops_short),
+            protective_stop: of(file_chance.protective_stop),
+            emergency_stop: of(file_chance.emergency_stop),
             ..ChanceSpec::default()
         };
         for stick in &file.outputs.stick {
@@ -157,6 +161,21 @@ impl Builder<'_> {
             flaw.bounce_s = bounce.for_s.0;
         }
         Ok(chance)
+    }
+
+    /// Refuse more to end a motion than there are motions: each is ended by one thing at most.
+    fn at_most_one(&self, file: &Spanned<ChanceFile>) -> Result<(), CellError> {
+        let ChanceFile { stops_short, protective_stop, emergency_stop } = file.get_ref();
+        let all = [stops_short, protective_stop, emergency_stop];
+        let sum: f64 = all.into_iter().flatten().map(|probability| probability.0).sum();
+        if sum <= 1.0 + SUM_EPSILON {
+            return Ok(());
+        }
+        let message = format!(
+            "`stops_short`, `protective_stop` and `emergency_stop` add up to {sum:.4}, and a \
+             motion ends by one of them at most: together they must be from 0 to 1"
+        );
+        Err(self.error(file, message))
     }
 
     /// Refuse a line that stands in a list before this.

@@ -52,6 +52,7 @@ impl Stand for ToyStand<'_> {
             place: "toy.obv:7".to_owned(),
             depths: tried.clone(),
             recovered,
+            otherwise: false,
             cause: Some(format!("cause {needed}")),
         };
         Outcome {
@@ -74,6 +75,7 @@ pub(crate) fn plan(strategies: &str, runs: u64) -> Plan {
         program_digest: "1".to_owned(),
         cell_digest: "2".to_owned(),
         goals: 1,
+        sequences: 1,
         memory_digest: None,
         strategies: Strategy::list(strategies).expect("a list"),
         seed: 5,
