@@ -99,7 +99,7 @@ impl KeyframeFlow {
                 let diagnostic =
                     Diagnostic::error(Code::UnknownKeyframe, at, message, "passed here")
                         .with_label(asked_at, "the keyframe is moved to here");
-                reports.add(self.with_item(diagnostic, item));
+                reports.add_unknown(name, self.with_item(diagnostic, item));
             }
             for &next in self.passed.get(&parameter).into_iter().flatten() {
                 if seen.insert(next) {

@@ -25,8 +25,7 @@ pub(crate) struct Reports {
 }
 
 /// What may be a consequence of a part that the parser has left out.
-const OF_ABSENCE: [Code; 8] = [
-    Code::UnknownKeyframe,
+const OF_ABSENCE: [Code; 7] = [
     Code::UnknownCheckpoint,
     Code::NoMain,
     Code::MissingClause,

@@ -15,6 +15,8 @@ use obverse_workcell::{Fault, Goal, Motion, Path, Speed, ToolId};
 
 /// No arm of this kind goes further than this, in metres.
 const FAR_M: f64 = 10.0;
+/// No goal is farther away from the base than this, in metres.
+const GOAL_FAR_M: f64 = 1_000.0;
 /// How far a rotation matrix may be from orthonormal.
 const ORTHONORMAL: f64 = 1e-6;
 /// How near the joints at the end of a line must come to those it was commanded to, in radians.
@@ -280,8 +282,12 @@ fn check_pose(pose: &Pose) -> Result<(), Fault> {
     if !(defect <= ORTHONORMAL && pose.rotation.determinant() > 0.0) {
         return Err(bad("the goal's rotation is not a rotation"));
     }
-    if !pose.translation_m.iter().all(|component| component.is_finite()) {
-        return Err(bad("the goal's position is not finite"));
+    // A goal that is so far away is no goal, and a line to it would never be walked along.
+    if !pose.translation_m.iter().all(|component| component.abs() <= GOAL_FAR_M) {
+        let [x, y, z]: [f64; 3] = pose.translation_m.into();
+        return Err(bad(format!(
+            "a goal at ({x:e}, {y:e}, {z:e}) m, where each must be within {GOAL_FAR_M} m"
+        )));
     }
     Ok(())
 }

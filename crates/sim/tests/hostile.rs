@@ -78,7 +78,10 @@ fn wild_motion(seed: u64, from: JointConfiguration) -> Motion {
     let goal = match choice(0, 5) {
         0 => Goal::Joints(JointConfiguration(std::array::from_fn(|joint| number(joint as u64)))),
         1 => Goal::Pose(Pose {
-            rotation: Matrix3::from_fn(|row, column| number((3 * row + column) as u64)),
+            rotation: match choice(5, 2) {
+                0 => Matrix3::identity(),
+                _ => Matrix3::from_fn(|row, column| number((3 * row + column) as u64)),
+            },
             translation_m: Vector3::new(number(20), number(21), number(22)),
         }),
         2 => Goal::Displaced {

@@ -212,6 +212,9 @@ impl Unexpected<'_> {
         let has_number = is_number(self.found);
         let before = self.before();
         Some(said(match before {
+            "for" if has_number && self.expectation.wants("up") => {
+                format!("write `for up to {}`", shortened(self.text()))
+            }
             "loop" | "for" if has_number => {
                 format!("write `repeat {} times {{ .. }}`", shortened(self.text()))
             }

@@ -199,7 +199,7 @@ impl<'s> Checker<'s> {
             None if known.is_empty() => diagnostic.with_note("it has none"),
             None => diagnostic.with_note(format!("it has {}", known.join(", "))),
         };
-        self.reports.add(diagnostic);
+        self.reports.add_unknown(keyframe.value, diagnostic);
     }
 }
 
