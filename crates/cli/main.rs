@@ -4,6 +4,7 @@
 //! workcells from files, [`story`] tells a run to people, [`report`] to machines, [`show`] shows a
 //! [`problem`].
 
+mod after;
 mod commands;
 mod cycle;
 mod debug;

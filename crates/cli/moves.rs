@@ -7,12 +7,15 @@ use crate::{story, write};
 use obverse_bytecode::{Module, Places};
 use obverse_preflight::{Grade, Graded, MoveReport, Reason, Report};
 use serde_json::{Map, Value, json};
+use std::path::Path;
 
 /// How wide the column of what the program says is.
 const TEXT_COLUMNS: usize = 52;
 
 /// The table of all moves, and how many there are of each grade.
-pub(crate) fn tell(module: &Module, report: &Report) {
+///
+/// It may be of a program that begins where another has ended.
+pub(crate) fn tell(module: &Module, report: &Report, after: Option<&Path>) {
     if report.moves.is_empty() {
         return;
     }
@@ -28,7 +31,8 @@ pub(crate) fn tell(module: &Module, report: &Report) {
     if !report.is_complete {
         write::line(GIVEN_UP);
     } else {
-        write::line("everything taken to be where the workcell has it");
+        let after = after.map(|first| format!(" after {}", first.display())).unwrap_or_default();
+        write::line(&format!("everything taken to be where the workcell has it{after}"));
         let is_elsewhere = |graded: &Graded| graded.elsewhere.is_some();
         let both = |found: &MoveReport| [found.forward.clone(), found.reverse.clone()];
         if report.moves.iter().flat_map(both).flatten().any(|graded| is_elsewhere(&graded)) {

@@ -7,15 +7,53 @@ use serde_json::json;
 fn the_inverse_is_a_program_that_is_formatted_and_correct() {
     let bench = Bench::new("invert");
     let inverse = bench.ends(0, &["invert", "sheets.obv", "main"]).stdout;
-    assert!(inverse.starts_with("// The inverse of `main` in sheets.obv.\n\ncell "), "{inverse}");
+    assert!(inverse.starts_with("// The inverse of `main` in sheets.obv.\n// It "), "{inverse}");
     bench.write("back.obv", &inverse);
     bench.ends(0, &["fmt", "--check", "back.obv"]);
-    // The sheets lie in the tray yet: that it would find them on the bed, nobody can check.
+    // The sheets lie in the tray yet.
     let checked = bench.ends(1, &["check", "back.obv"]).stdout;
     assert!(checked.starts_with("back.obv: correct, no warnings;"), "{checked}");
+    let checked = bench.ends(0, &["check", "back.obv", "--after", "sheets.obv"]).stdout;
+    assert!(checked.contains("6 moves: all reachable"), "{checked}");
+    assert!(checked.contains("where the workcell has it after sheets.obv"), "{checked}");
     let again = bench.ends(0, &["invert", "back.obv", "main_inverse"]).stdout;
     let same = |words: &str| again.contains(words);
     assert!(same("sequence main {\n  call lay(sheet_1)\n") && same("var laid = 0\n"), "{again}");
+}
+
+#[test]
+fn the_inverse_takes_apart_what_was_put_together() {
+    let bench = Bench::new("invert_after");
+    for program in ["sheets.obv", "tower.obv"] {
+        let inverse = bench.ends(0, &["invert", program, "main"]).stdout;
+        bench.write("apart.obv", &inverse);
+        for command in ["run", "back"] {
+            let ran = bench.ends(0, &[command, "apart.obv", "--after", program]).stdout;
+            let head = ran.lines().next().expect("a head");
+            assert!(head.ends_with(&format!("seed 0, after {program}")), "{ran}");
+            assert!(ran.contains("\nfinished\n"), "{ran}");
+        }
+    }
+}
+
+#[test]
+fn nothing_begins_after_what_does_not_end_or_does_not_fit() {
+    let bench = Bench::new("invert_after_wrong");
+    let ran = bench.ends(2, &["run", "sheets.obv", "--after", "glue.obv"]);
+    assert!(
+        ran.stderr.contains("glue.obv:13:6: the workcell has no item `block_c`"),
+        "{}",
+        ran.stderr
+    );
+    bench.write("ends.obv", "cell \"vacuum_cell.toml\"\nsequence main { move to item_0.above }");
+    let ran = bench.ends(2, &["check", "sheets.obv", "--after", "ends.obv"]);
+    assert!(ran.stderr.contains("`item_0`"), "{}", ran.stderr);
+    let away = "cell \"vacuum_cell.toml\"\nsequence main { move 5 m down in base }\n";
+    bench.write("away.obv", away);
+    let ran = bench.ends(2, &["run", "sheets.obv", "--after", "away.obv"]);
+    let why = "away.obv: nothing can begin after it, since it does not end: fault:";
+    assert!(ran.stderr.contains(why), "{}", ran.stderr);
+    bench.ends(2, &["run", "sheets.obv", "--dry", "--after", "sheets.obv"]);
 }
 
 #[test]

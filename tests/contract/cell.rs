@@ -6,7 +6,7 @@ use obverse_testkit::Ledger;
 use obverse_testkit::logged::Command;
 use obverse_workcell::{
     Arm, Clock, Dice, DigitalIo, Fault, ForceTorque, Goal, Gripper, ItemId, Items, Motion,
-    MotionEnd, MotionReport, Safety, ToolId, Workcell,
+    MotionEnd, MotionReport, Safety, ToolId, Watch, Watching, Workcell,
 };
 use std::collections::BTreeMap;
 
@@ -127,6 +127,12 @@ impl Clock for Cell {
             self.log.push(Command::Wait(duration_s));
         }
         self.ledger.wait(duration_s)
+    }
+}
+
+impl Watching for Cell {
+    fn watch(&mut self, watches: &[Watch]) {
+        self.ledger.watch(watches);
     }
 }
 

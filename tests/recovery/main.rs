@@ -7,6 +7,7 @@
 mod again;
 mod cleanup;
 mod sites;
+mod watched;
 
 use obverse_bytecode::{FaultName, Module, verify};
 use obverse_compiler::compile;

@@ -1,5 +1,6 @@
-//! What a program says of faults: which of them it raises as errors, by name, and how much one
-//! incident may cost. Knows nothing of a workcell: the names are its codes, and nothing else.
+//! What a program says of faults: which of them it raises as errors, by name, what it has watched
+//! while it acts, and how much one incident may cost. Knows nothing of a workcell: the names are
+//! its codes, and nothing else.
 
 use serde::{Deserialize, Serialize};
 
@@ -69,6 +70,23 @@ impl FaultName {
     pub fn from_code(code: &str) -> Option<Self> {
         Self::ALL.into_iter().find(|name| name.code() == code)
     }
+}
+
+/// What a program has watched while it acts: an error is raised when it comes to hold.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub enum Watched {
+    /// An input at a level.
+    Input {
+        /// Its number in the workcell.
+        bit: u16,
+        /// The level.
+        level: bool,
+    },
+    /// A contact force of more than so many newtons, which are more than nothing.
+    Force {
+        /// How many.
+        above_n: f64,
+    },
 }
 
 /// How much recovering from one incident may cost before it is given up; what is not said is not

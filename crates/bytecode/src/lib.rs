@@ -18,7 +18,7 @@ mod wire;
 pub use builder::{CodeBuilder, Mark};
 pub use code::ModuleCode;
 pub use codec::{DecodeError, DecodeErrorKind, decode, encode, fingerprint};
-pub use fault::{Bounds, FaultName};
+pub use fault::{Bounds, FaultName, Watched};
 pub use module::{
     ActionKind, Constant, Continuation, Depth, ErrorDeclaration, Extent, Function, FunctionKind,
     Item, Keyframe, Mention, Mentioned, Module, Otherwise, Pattern, Perturbation, Recovery,

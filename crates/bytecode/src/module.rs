@@ -3,7 +3,7 @@
 //! Indices are into the tables of the same module; [`verify`](mod@crate::verify) says what must
 //! hold of them. Lengths are metres, angles radians, times seconds.
 
-use crate::fault::{Bounds, FaultName};
+use crate::fault::{Bounds, FaultName, Watched};
 use crate::places::Places;
 use obverse_isa::{Instr, Type};
 use serde::{Deserialize, Serialize};
@@ -243,6 +243,8 @@ pub struct ErrorDeclaration {
     pub severity: Severity,
     /// The faults of the workcell that raise it, ascending; none of them raises another error.
     pub faults: Vec<FaultName>,
+    /// What raises it when it comes to hold while the program acts.
+    pub watches: Vec<Watched>,
     /// What recovering from one incident may cost.
     pub bounds: Bounds,
     /// How it is recovered from.
@@ -253,6 +255,27 @@ pub struct ErrorDeclaration {
     pub respond: Respond,
     /// How the program goes on afterwards.
     pub continuation: Continuation,
+}
+
+impl ErrorDeclaration {
+    /// Whether the workcell may raise it, by whatever acts.
+    #[must_use]
+    pub fn is_raised_by_workcell(&self) -> bool {
+        !self.faults.is_empty() || !self.watches.is_empty()
+    }
+
+    /// Whether an act ends where what is watched for it comes to hold. A warning is noted, and
+    /// stops nothing.
+    #[must_use]
+    pub fn interrupts(&self) -> bool {
+        self.respond == Respond::AtOnce && self.severity != Severity::Warning
+    }
+
+    /// Whether what raises it ends the act at hand before it is done.
+    #[must_use]
+    pub fn ends_acts(&self) -> bool {
+        !self.faults.is_empty() || (!self.watches.is_empty() && self.interrupts())
+    }
 }
 
 /// How bad an error is.

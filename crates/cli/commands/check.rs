@@ -2,11 +2,13 @@
 //! what can be said of each move before anything moves.
 
 use super::Result;
+use crate::after::AfterArguments;
 use crate::load::{self, Program};
 use crate::parameters::ParameterArguments;
 use crate::problem::Problem;
 use crate::{Outcome, moves, show, write};
 use obverse_preflight::Report;
+use obverse_sim::Plan;
 use obverse_syntax::codes::Code;
 use obverse_syntax::diagnostic::{Diagnostic, Severity};
 use serde_json::json;
@@ -20,6 +22,8 @@ pub(crate) struct Arguments {
     /// The workcell file, in place of the one that the program names.
     #[arg(long, value_name = "FILE")]
     cell: Option<PathBuf>,
+    #[command(flatten)]
+    after: AfterArguments,
     #[command(flatten)]
     parameters: ParameterArguments,
     /// Let a move that is not known before running fail the check, too.
@@ -112,7 +116,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result {
         module.code.len(),
         checked.cell_name,
     ));
-    moves::tell(module, &checked.report);
+    moves::tell(module, &checked.report, arguments.after.after.as_deref());
     if checked.denied > 0 {
         let words = if checked.denied == 1 { "warning that is" } else { "warnings that are" };
         let (file, count) = (arguments.file.display(), checked.denied);
@@ -137,7 +141,8 @@ fn in_its_cell(arguments: &Arguments, program: Program) -> std::result::Result<C
     let (cell, file) = load::workcell(&program, arguments.cell.as_deref(), 0)?;
     // Says what is missing, with its place.
     load::machine(&program, &cell, &file)?;
-    let report = obverse_preflight::check(&program.verified, cell.cell()).map_err(|errors| {
+    let plan = Plan::new(cell.cell()).led(|sim| arguments.after.lead(sim, &file))?;
+    let report = obverse_preflight::check(&program.verified, plan).map_err(|errors| {
         Problem::new(errors.iter().map(ToString::to_string).collect::<Vec<_>>().join("; "))
     })?;
     let denied = arguments.denied(warnings_of(&program));

@@ -68,6 +68,12 @@ fn told(arguments: &Arguments, file: &str, inverse: &Inverse) -> Outcome {
     let plain = |text: &str| text.chars().filter(|c| !c.is_control()).collect::<String>();
     let (sequence, file) = (&arguments.sequence, plain(file));
     let mut text = format!("// The inverse of `{sequence}` in {file}.\n");
+    // Of another sequence than the whole, nobody can say what else is to be done first.
+    if sequence == "main" && inverse.is_begun_with {
+        text += &format!(
+            "// It begins where that has ended: check and run it with `--after {file}`.\n"
+        );
+    }
     if !inverse.is_begun_with {
         text += "//\n// `main` is empty: who calls the inverse knows its arguments, and has the \
                  variables of the\n// program as the sequence leaves them.\n";

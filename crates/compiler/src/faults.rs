@@ -1,5 +1,6 @@
-//! The errors that the workcell raises: which faults there are to name, and after which acts each
-//! may be found pending. What is done about them is as for those that are thrown.
+//! The errors that the workcell raises, by faults or by what is watched: which faults there are to
+//! name, and after which acts each may be found pending. What is done about them is as for those
+//! that are thrown.
 
 use crate::report::{Reports, warning};
 use crate::tree::{Body, Program, StatementKind};
@@ -61,8 +62,10 @@ impl Faults {
     /// Those of a program.
     pub(crate) fn of(errors: &[ErrorDeclaration]) -> Self {
         let by = |act| {
-            let raises =
-                |error: &ErrorDeclaration| error.faults.iter().any(|fault| may_meet(act, *fault));
+            let raises = |error: &ErrorDeclaration| {
+                let is_met = error.faults.iter().any(|fault| may_meet(act, *fault));
+                is_met || !error.watches.is_empty()
+            };
             let raised = (0..).zip(errors).filter(|(_, error)| raises(error));
             raised.map(|(id, _)| ErrorId(id)).collect()
         };

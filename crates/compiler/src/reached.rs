@@ -61,7 +61,8 @@ pub(crate) fn check(
 fn reached_from(program: &Program, mut to_visit: Vec<FunctionId>) -> Vec<bool> {
     let mut reached = vec![false; program.functions.len() + 1];
     to_visit.extend(program.cleanup);
-    let raised = (0..).zip(&program.module.errors).filter(|(_, error)| !error.faults.is_empty());
+    let raised =
+        (0..).zip(&program.module.errors).filter(|(_, error)| error.is_raised_by_workcell());
     for (error, _) in raised {
         to_visit.extend(recoveries(program, ErrorId(error)).map(|(used, _)| used));
     }

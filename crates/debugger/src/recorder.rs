@@ -9,7 +9,7 @@ use obverse_bytecode::Module;
 use obverse_geometry::{JointConfiguration, Pose};
 use obverse_workcell::{
     Arm, Clock, Dice, DigitalIo, Fault, ForceTorque, Gripper, ItemId, Items, Motion, MotionReport,
-    Safety, ToolId, Workcell,
+    Safety, ToolId, Watch, Watching, Workcell,
 };
 use std::cell::{Cell, RefCell};
 use std::collections::BTreeMap;
@@ -110,6 +110,8 @@ pub struct Recorder<'r, C> {
     forced: &'r BTreeMap<u16, bool>,
     /// Whether who reads is told of the run, and not the program: that is not recorded.
     is_overheard: &'r Cell<bool>,
+    /// Whether the workcell watches what the program says.
+    is_watched: bool,
 }
 
 impl<'r, C: Workcell> Recorder<'r, C> {
@@ -122,7 +124,8 @@ impl<'r, C: Workcell> Recorder<'r, C> {
         forced: &'r BTreeMap<u16, bool>,
         is_overheard: &'r Cell<bool>,
     ) -> Self {
-        Self { cell, log, senses: RefCell::new(senses), copies, forced, is_overheard }
+        let senses = RefCell::new(senses);
+        Self { cell, log, senses, copies, forced, is_overheard, is_watched: false }
     }
 
     fn read(&self, sense: Sense, value: u64) {
@@ -139,6 +142,7 @@ impl<'r, C: Workcell> Recorder<'r, C> {
         self.log.frames.push(Frame {
             command,
             fault,
+            is_watched: self.is_watched,
             held: self.cell.held(),
             force_n: self.cell.force_n(),
             now_s: self.cell.now_s(),
@@ -275,6 +279,13 @@ impl<C: Workcell> Clock for Recorder<'_, C> {
         let result = self.cell.wait(duration_s);
         self.note(Command::Wait(duration_s), result.as_ref().err());
         result
+    }
+}
+
+impl<C: Workcell> Watching for Recorder<'_, C> {
+    fn watch(&mut self, watches: &[Watch]) {
+        self.is_watched = !watches.is_empty();
+        self.cell.watch(watches);
     }
 }
 

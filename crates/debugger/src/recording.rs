@@ -100,6 +100,8 @@ pub struct Frame {
     pub command: Command,
     /// Which of the faults it ended in.
     pub fault: Option<u32>,
+    /// Whether the workcell watched meanwhile what the program says.
+    pub is_watched: bool,
     /// What the gripper holds after it.
     pub held: Option<ItemId>,
     /// The force after it, in newtons.

@@ -8,7 +8,7 @@ use crate::recording::{Command, Frame, Recording, Sense, World};
 use obverse_geometry::{JointConfiguration, Pose};
 use obverse_workcell::{
     Arm, Clock, Dice, DigitalIo, Fault, ForceTorque, Gripper, ItemId, Items, Motion, MotionReport,
-    Safety, ToolId, Workcell,
+    Safety, ToolId, Watch, Watching, Workcell,
 };
 use std::cell::RefCell;
 use std::collections::BTreeMap;
@@ -226,6 +226,11 @@ impl Clock for Replay<'_> {
         };
         self.next(is_asked).map(|_| ())
     }
+}
+
+impl Watching for Replay<'_> {
+    /// What came to hold is in the recording.
+    fn watch(&mut self, _: &[Watch]) {}
 }
 
 impl Dice for Replay<'_> {

@@ -295,6 +295,7 @@ impl<'p, C: Workcell> Run<'p, C> {
     fn do_again(&self, number: usize, cell: &mut C) -> Option<()> {
         let log = &self.recording.log;
         let frame = log.frames.get(number)?;
+        cell.watch(if frame.is_watched { self.machine.watches() } else { &[] });
         let done: Result<(), Fault> = match frame.command {
             Command::Execute(index) => {
                 let moved = log.motions.get(index as usize)?;

@@ -142,7 +142,7 @@ reasons! {
         "Following the line in the configuration that the arm is in, a joint would have to turn \
          further than it may. The goal can be reached with the joints turned otherwise.\n\nGo \
          there by joints, or begin the line with that joint turned back by a whole turn."
-    LineLeavesReach "P0203" OtherConfiguration "the straight line leaves the reach of the arm"
+    LineLeavesReach "P0203" OtherConfiguration "in this configuration the line leaves reach"
         "Both ends can be reached, and a point between them cannot, at least not in the \
          configuration that the arm is in.\n\nGo there by joints, or by a place in between."
     LineEndsOtherwise "P0204" OtherConfiguration "the straight line ends in another configuration"

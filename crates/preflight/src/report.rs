@@ -9,7 +9,7 @@ use crate::verdict::Verdict;
 use crate::worlds::Worlds;
 use obverse_bytecode::{Module, Verified};
 use obverse_isa::{Family, Setting};
-use obverse_sim::{Cell, Plan};
+use obverse_sim::Plan;
 use obverse_vm::{Calculator, Direction, LinkError, Links};
 use obverse_workcell::Items;
 
@@ -64,16 +64,15 @@ impl Report {
     }
 }
 
-/// Grade every move of a program in a cell.
+/// Grade every move of a program that begins in a cell as it is planned to be then.
 ///
 /// The time is bounded, whatever the program: with too many ways or too many motions the check is
 /// given up, and the report says that it is not complete.
 ///
 /// # Errors
 /// All that the program needs and the cell lacks.
-pub fn check(program: &Verified, cell: &Cell) -> Result<Report, Vec<LinkError>> {
+pub fn check(program: &Verified, plan: Plan) -> Result<Report, Vec<LinkError>> {
     let module = program.module();
-    let plan = Plan::new(cell);
     Links::new(module, plan.workcell())?;
     let tools = module.tools.iter().filter_map(|tool| plan.workcell().tool(tool));
     let values = Values {

@@ -101,6 +101,7 @@ pub(crate) fn of_fault(fault: &Fault, plan: &Plan, motion: &Motion) -> Verdict {
         | Fault::Stopped
         | Fault::EmergencyStop { .. }
         | Fault::StoppedShort { .. }
+        | Fault::Watched { .. }
         | Fault::ProtectiveStop { .. } => Reason::BadCommand,
     };
     Verdict { reason, detail: fault.to_string(), fraction, contact, fault: Some(fault.kind()) }

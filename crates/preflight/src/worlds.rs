@@ -9,7 +9,7 @@ use crate::reason::Reason;
 use crate::verdict::{Verdict, of_fault};
 use obverse_geometry::JointConfiguration;
 use obverse_sim::{Cell, Plan, Sim};
-use obverse_workcell::{Arm, Fault, Goal, Gripper, Motion, MotionReport, Path};
+use obverse_workcell::{Arm, DigitalIo, Fault, Goal, Gripper, Motion, MotionReport, Path};
 use std::collections::HashMap;
 use std::rc::Rc;
 
@@ -86,8 +86,9 @@ impl Worlds {
             knows_items: false,
             level: None,
         };
+        let level = gripper_output.is_some_and(|bit| start.workcell().output(bit));
         let start =
-            World { plan: start, stand: Stand::Known, knows_items: true, level: Some(false) };
+            World { plan: start, stand: Stand::Known, knows_items: true, level: Some(level) };
         let mut worlds = Self {
             list: Vec::new(),
             by_numbers: HashMap::new(),

@@ -74,7 +74,7 @@ pub fn shortfalls(module: &Module) -> Vec<Shortfall> {
             return found;
         }
     }
-    for (id, _) in (0..).zip(&module.errors).filter(|(_, error)| !error.faults.is_empty()) {
+    for (id, _) in (0..).zip(&module.errors).filter(|(_, error)| error.is_raised_by_workcell()) {
         // Almost every act may raise it, and it is gone back from where it is due: the first place
         // will do.
         let due = |instr: &Instr| *instr == Instr::ErrorDue { error: ErrorId(id) };

@@ -137,6 +137,7 @@ impl<C: Workcell> Run<'_, '_, '_, C> {
         let (began_m, tool) = (self.cell.way_m(), self.machine.tool());
         let gone_m = |cell: &C| cell.way_m() - began_m;
         let mut step_m = distance_m;
+        self.cell.watch(&[]);
         while step_m >= BACK_UP_MIN_M && gone_m(self.cell) + BACK_UP_MIN_M <= distance_m {
             let (from, before_m) = (self.cell.joints(), self.cell.way_m());
             let (axis, frame) = (Axis::MinusZ, Frame::Tcp);

@@ -84,6 +84,11 @@ impl Feeder {
         items.present(spec.item, world.item_place(spec.item).compose(&offset), is_askew);
     }
 
+    /// When the part is there that is on its way, if that is after a time.
+    pub(crate) fn due_after_s(&self, time_s: f64) -> Option<f64> {
+        self.due_s.filter(|due_s| *due_s > time_s)
+    }
+
     /// Whether the part is at its place, held or not.
     pub(crate) fn has_part(
         spec: &FeederSpec,

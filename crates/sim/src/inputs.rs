@@ -60,6 +60,16 @@ impl Output {
         change.map_or(self.before, |(_, level)| *level)
     }
 
+    /// When a change is seen next that is seen so much later than it is made, after a time.
+    pub(crate) fn next_seen_s(&self, delay_s: f64, after_s: f64) -> Option<f64> {
+        let seen_s = |at_s: f64| {
+            // Rounded up where the sum is not yet so much later, as the level is looked up.
+            let sum_s = at_s + delay_s;
+            if at_s <= sum_s - delay_s { sum_s } else { sum_s.next_up() }
+        };
+        self.past.iter().map(|(at_s, _)| seen_s(*at_s)).find(|seen_s| *seen_s > after_s)
+    }
+
     /// When it changed last before a time.
     fn changed_before(&self, time_s: f64) -> Option<f64> {
         let change = self.past.iter().rev().find(|(at_s, _)| *at_s <= time_s);
@@ -162,6 +172,13 @@ impl Wire {
         // A cast of a float saturates, and times are not negative.
         let number = counter_of(input, (now_s / FLICKER_S) as u64);
         random::unit(seed, Stream::InputFlicker, number) < 0.5
+    }
+
+    /// When it may show another level next while it flickers, after a time.
+    pub(crate) fn next_flicker_s(&self, now_s: f64) -> Option<f64> {
+        let slot_s = ((now_s / FLICKER_S).floor() + 1.0) * FLICKER_S;
+        let next_s = if slot_s > now_s { slot_s } else { now_s + FLICKER_S };
+        (now_s < self.flickers_until_s).then_some(next_s.min(self.flickers_until_s))
     }
 
     /// Whether it does not show what it should.

@@ -39,6 +39,7 @@ mod sweep;
 mod travel;
 mod truth;
 mod turned;
+mod watching;
 mod world;
 
 pub use cell::{Cell, CellCode, CellError, CellPlaces};

@@ -71,6 +71,15 @@ impl Plan {
         Self { sim }
     }
 
+    /// The same workcell as something leaves it that is done there first.
+    ///
+    /// # Errors
+    /// Whatever keeps that from being done.
+    pub fn led<E>(mut self, lead: impl FnOnce(&mut Sim) -> Result<(), E>) -> Result<Self, E> {
+        lead(&mut self.sim)?;
+        Ok(self)
+    }
+
     /// The workcell as it would be now.
     #[must_use]
     pub fn workcell(&self) -> &Sim {

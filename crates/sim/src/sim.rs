@@ -12,6 +12,7 @@ use crate::kinematics::forward;
 use crate::random::{self, Stream, counter_of};
 use crate::seating::Seating;
 use crate::sensor::Sensor;
+use crate::watching::{Of, Watched};
 use crate::world::World;
 use obverse_geometry::{JointConfiguration, Pose};
 use obverse_workcell::{
@@ -49,6 +50,7 @@ pub struct Sim {
     pub(crate) last_motion: MotionReport,
     /// How far the tool centre point has gone, in metres.
     pub(crate) way_m: f64,
+    pub(crate) watched: Watched,
     /// How often one motion may be looked at for contact, if not as often as it takes.
     pub(crate) looks_max: Option<u32>,
 }
@@ -89,6 +91,7 @@ impl Sim {
             },
             way_m: 0.0,
             world: Arc::new(world),
+            watched: Watched::default(),
             looks_max: None,
         };
         // A gripper that is closed without power holds what is in it from the start.
@@ -286,6 +289,7 @@ impl Arm for Sim {
         if self.stopped {
             return Err(Fault::Stopped);
         }
+        self.look(Of::All, 0.0)?;
         let number = self.motions;
         self.motions += 1;
         let by_chance = Interruption::by_chance(&self.world.cell.chance, self.world.seed, number);
@@ -323,6 +327,7 @@ impl DigitalIo for Sim {
     fn set_output(&mut self, bit: u16, level: bool) -> Result<(), Fault> {
         let interruption = self.acts.begin();
         let index = self.bit(bit)?;
+        self.look(Of::All, 0.0)?;
         if let Some(interruption) = interruption {
             if interruption.fraction >= 0.5 {
                 self.drive(index, level);
@@ -330,7 +335,8 @@ impl DigitalIo for Sim {
             return Err(self.interrupt(interruption));
         }
         self.drive(index, level);
-        Ok(())
+        self.look(Of::All, 1.0)?;
+        self.watched.take_noticed()
     }
 
     fn input_count(&self) -> u16 {
@@ -371,9 +377,15 @@ impl Clock for Sim {
             let why = format!("a wait of {duration_s} s, which must be from 0 to {WAIT_S_MAX} s");
             return Err(Fault::BadCommand { why });
         }
-        self.now_s += duration_s * interruption.map_or(1.0, |interruption| interruption.fraction);
+        self.look(Of::All, 0.0)?;
+        let whole = interruption.map_or(1.0, |interruption| interruption.fraction);
+        self.pass(self.now_s + duration_s * whole, |passed_s| passed_s / duration_s)?;
         self.settle();
-        interruption.map_or(Ok(()), |interruption| Err(self.interrupt(interruption)))
+        if let Some(interruption) = interruption {
+            return Err(self.interrupt(interruption));
+        }
+        self.look(Of::All, 1.0)?;
+        self.watched.take_noticed()
     }
 }
 

@@ -11,6 +11,7 @@ use crate::route::{self, Route};
 use crate::sensor::Sensor;
 use crate::sim::{Sim, tcp_of};
 use crate::sweep::{End, Outcome, Sweep};
+use crate::watching::Of;
 use crate::world::Owner;
 use obverse_geometry::Pose;
 use obverse_workcell::{Fault, Motion, MotionEnd, MotionReport};
@@ -26,25 +27,44 @@ impl Sim {
         let tool = route::tool(&world.cell, motion.tool)?;
         let route = Route::plan(&world.cell, &self.joints, motion)?;
         let began_m = tcp_of(&self.joints, &tool.tcp).translation_m;
-        let until = interruption.map_or(1.0, |interruption| interruption.fraction);
+        let profile = route.profile;
+        let begin_s = self.now_s;
+        let cut_s = self.stopped_at_s(begin_s + profile.duration_s());
+        let cut = cut_s.map_or(f64::INFINITY, |cut_s| profile.fraction_at(cut_s - begin_s));
+        let until = interruption.map_or(1.0, |interruption| interruption.fraction).min(cut);
         let left = self.items.held().and_then(|item| self.seatings[item].as_ref());
         let mut sweep = Sweep::new(&world, &route, &self.items, tool, left);
         sweep.looks_max = self.looks_max;
-        let outcome = sweep.run(until, self.now_s, self.force_n, motion.force_limit_n);
+        let watched_n = self.watched.stops_above_n();
+        let limit_n = least(motion.force_limit_n, watched_n);
+        let outcome = sweep.run(until, begin_s, self.force_n, limit_n);
         if let Some(item) = self.items.held() {
             self.seatings[item] = sweep.left(outcome.fraction);
         }
+        let is_cut = outcome.end == End::Reached && cut <= until;
+        let duration_s = profile.time_at_s(outcome.fraction);
+        let end_s = cut_s.filter(|_| is_cut).unwrap_or(begin_s + duration_s);
+        let passed = self.pass(end_s, |passed_s| profile.fraction_at(passed_s));
         self.joints = route.joints_at(outcome.fraction);
         self.way_m += (tcp_of(&self.joints, &tool.tcp).translation_m - began_m).norm();
-        let duration_s = route.profile.time_at_s(outcome.fraction);
-        self.now_s += duration_s;
         self.force_n = outcome.force_n;
-        let end = self.end(&outcome, interruption, &tool.name);
+        let is_watchs = watched_n.is_some() && limit_n != motion.force_limit_n;
+        let end = match (passed, outcome.end, watched_n.filter(|_| is_watchs)) {
+            (Err(fault), ..) => Err(fault),
+            (Ok(()), End::Force, Some(limit_n)) => {
+                let fault = self.watched.stopped_above(limit_n, outcome.fraction);
+                fault.map_or(Ok(MotionEnd::StoppedByForce), Err)
+            }
+            _ => self.end(&outcome, interruption, &tool.name),
+        };
         let report = end.map(|end| self.report(end, &route, &tool.tcp, &outcome, duration_s));
         let (most_n, pushed) = (sweep.most_n, sweep.pushed);
         self.suffer(&Travelled { route: &route, fraction: outcome.fraction, most_n, pushed, tool });
         self.settle();
         self.last_motion = report?;
+        self.watched.read(self.last_motion.peak_force_n, outcome.fraction);
+        self.look(Of::All, outcome.fraction)?;
+        self.watched.take_noticed()?;
         Ok(self.last_motion)
     }
 
@@ -111,4 +131,9 @@ impl Sim {
             Owner::Item(index) => self.world.cell.items[index].name.clone(),
         }
     }
+}
+
+/// The lower of two limits, if there is one.
+fn least(one: Option<f64>, other: Option<f64>) -> Option<f64> {
+    one.into_iter().chain(other).min_by(f64::total_cmp)
 }

@@ -239,10 +239,28 @@ pub enum ErrorClause<'s> {
     Respond(Respond),
     /// `then …`: how to go on after recovery.
     Then(Continuation),
-    /// `on protective stop, collision`: the faults of the workcell that raise it.
-    On(Vec<Spanned<FaultWord>>),
+    /// `on protective stop, collision, force > 30 N`: what of the workcell raises it.
+    On(Vec<Cause<'s>>),
     /// `give up after 6 times, 90 s, 3 m`: what recovering from one incident may cost.
     GiveUp(Vec<Bound<'s>>),
+}
+
+/// What of the workcell raises an error.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Cause<'s> {
+    /// `protective stop`: a fault.
+    Fault(Spanned<FaultWord>),
+    /// `input door_closed low`: an input that comes to a level while something is done.
+    Input {
+        /// Which.
+        input: Spanned<Signal<'s>>,
+        /// The level.
+        high: bool,
+        /// All of it.
+        span: Span,
+    },
+    /// `force > 30 N`: more force than this while something is done.
+    Force(Expression<'s>),
 }
 
 /// A fault of the workcell in words.

@@ -108,6 +108,7 @@ fn tables() -> Module {
         name: name.to_owned(),
         severity: Severity::Recoverable,
         faults: Vec::new(),
+        watches: Vec::new(),
         bounds: Bounds::default(),
         recovery: Recovery::None,
         otherwise: Otherwise::Stop,

@@ -3,8 +3,8 @@
 use obverse_geometry::{JointConfiguration, Pose};
 use obverse_sim::{FaultPlan, Sim, StopKind};
 use obverse_workcell::{
-    Arm, Clock, Dice, DigitalIo, Fault, FaultKind, ForceTorque, Gripper, ItemId, Items, Motion,
-    MotionReport, Safety, ToolId, Workcell,
+    Arm, Clock, Condition, Dice, DigitalIo, Fault, FaultKind, ForceTorque, Gripper, ItemId, Items,
+    Motion, MotionReport, Safety, ToolId, Watch, Watching, Workcell,
 };
 use std::collections::BTreeMap;
 
@@ -61,6 +61,10 @@ fn fault(kind: FaultKind) -> Fault {
         FaultKind::ProtectiveStop => Fault::ProtectiveStop { fraction: 0.0 },
         FaultKind::EmergencyStop => Fault::EmergencyStop { fraction: 0.0 },
         FaultKind::StoppedShort => Fault::StoppedShort { fraction: 0.0 },
+        FaultKind::Watched => {
+            let condition = Condition::Input { bit: 0, level: true };
+            Fault::Watched { watch: Watch { number: 0, condition, stops: true }, fraction: 0.0 }
+        }
         FaultKind::Stopped => Fault::Stopped,
         FaultKind::BadCommand => Fault::BadCommand { why: "it is no number".to_owned() },
         FaultKind::Missing => Fault::Missing { what: "output 99".to_owned() },
@@ -139,6 +143,12 @@ impl Clock for Faulty {
     fn wait(&mut self, duration_s: f64) -> Result<(), Fault> {
         self.refuse()?;
         self.sim.wait(duration_s)
+    }
+}
+
+impl Watching for Faulty {
+    fn watch(&mut self, watches: &[Watch]) {
+        self.sim.watch(watches);
     }
 }
 

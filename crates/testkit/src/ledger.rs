@@ -4,7 +4,7 @@
 use obverse_geometry::{JointConfiguration, Pose};
 use obverse_workcell::{
     Arm, Clock, Dice, DigitalIo, Fault, ForceTorque, Goal, Gripper, ItemId, Items, Motion,
-    MotionEnd, MotionReport, Safety, ToolId, Workcell,
+    MotionEnd, MotionReport, Safety, ToolId, Watch, Watching, Workcell,
 };
 
 /// How many outputs and inputs there are.
@@ -223,6 +223,11 @@ impl Clock for Ledger {
         self.now_s += duration_s;
         Ok(())
     }
+}
+
+impl Watching for Ledger {
+    /// Nothing ever comes to hold.
+    fn watch(&mut self, _: &[Watch]) {}
 }
 
 impl Dice for Ledger {

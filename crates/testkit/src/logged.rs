@@ -5,7 +5,7 @@ use crate::Ledger;
 use obverse_geometry::{JointConfiguration, Pose};
 use obverse_workcell::{
     Arm, Clock, Dice, DigitalIo, Fault, ForceTorque, Gripper, ItemId, Items, Motion, MotionEnd,
-    MotionReport, Safety, ToolId, Workcell,
+    MotionReport, Safety, ToolId, Watch, Watching, Workcell,
 };
 
 /// Something that a workcell was told to do.
@@ -137,6 +137,12 @@ impl Clock for Logged {
             self.log.push(Command::Wait(duration_s));
         }
         self.ledger.wait(duration_s)
+    }
+}
+
+impl Watching for Logged {
+    fn watch(&mut self, watches: &[Watch]) {
+        self.ledger.watch(watches);
     }
 }
 

@@ -74,8 +74,8 @@ pub fn goes_back_along_the_trail(u: &mut Unstructured<'_>) -> Result<bool> {
 }
 
 /// A way back that is blocked in an act, and gone forward from there: the trail is what it was, no
-/// action longer and none shorter. Branches of a fork may take their turns otherwise then, since the
-/// clock has gone on, so that programs without forks are looked at.
+/// action longer and none shorter. Branches of a fork may take their turns otherwise then, since
+/// the clock has gone on, so that programs without forks are looked at.
 ///
 /// # Errors
 /// Those of the randomness.

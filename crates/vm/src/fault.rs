@@ -53,6 +53,7 @@ impl Machine<'_> {
     fn toggle(&self, level_before: Option<bool>, cell: &mut dyn Workcell) -> bool {
         match (level_before, self.program.module().code[self.state.place.pc]) {
             (Some(level), Instr::OutputToggle { bit, .. }) => {
+                self.watch(false, cell);
                 cell.output(bit.0) != level || cell.set_output(bit.0, !level).is_ok()
             }
             _ => true,

@@ -1,9 +1,9 @@
 //! Linking: a module's names to a workcell's numbers, once, before anything moves.
 
 use crate::values::Settings;
-use obverse_bytecode::{Mentioned, Module};
+use obverse_bytecode::{Mentioned, Module, Watched};
 use obverse_isa::{Instr, Setting};
-use obverse_workcell::{ItemId, Workcell};
+use obverse_workcell::{Condition, ItemId, Watch, Workcell};
 use std::collections::BTreeMap;
 use std::fmt;
 
@@ -14,6 +14,8 @@ pub struct Links {
     pub(crate) items: Vec<ItemId>,
     /// By the module's tools.
     pub(crate) tools: Vec<u64>,
+    /// What is watched while the program acts, by the errors that it raises.
+    pub(crate) watches: Vec<Watch>,
     /// The settings that hold when the program starts.
     pub(crate) settings: Settings,
 }
@@ -93,6 +95,7 @@ impl Links {
             }
         }
         errors.extend(missing_lines(module, cell));
+        links.watches = watches(module);
         for setting in Setting::ALL {
             links.settings[*setting as usize] = setting.initial();
         }
@@ -101,8 +104,24 @@ impl Links {
     }
 }
 
-/// The outputs and inputs that are not there, each once: those that the code needs, and those that
-/// the program's I/O map names.
+/// What a module's errors have watched, in the order of their declaration.
+fn watches(module: &Module) -> Vec<Watch> {
+    let mut watches = Vec::new();
+    for (number, error) in (0..).zip(&module.errors) {
+        let stops = error.interrupts();
+        watches.extend(error.watches.iter().map(|watched| {
+            let condition = match *watched {
+                Watched::Input { bit, level } => Condition::Input { bit, level },
+                Watched::Force { above_n } => Condition::Force { above_n },
+            };
+            Watch { number, condition, stops }
+        }));
+    }
+    watches
+}
+
+/// The outputs and inputs that are not there, each once: those that the code needs, those that are
+/// watched, and those that the program's I/O map names.
 fn missing_lines(module: &Module, cell: &dyn Workcell) -> Vec<LinkError> {
     let outputs = |bit: u16| bit >= cell.output_count();
     let inputs = |bit: u16| bit >= cell.input_count();
@@ -116,6 +135,13 @@ fn missing_lines(module: &Module, cell: &dyn Workcell) -> Vec<LinkError> {
                 no_inputs.entry(bit.0).or_insert(Some(pc));
             }
             _ => {}
+        }
+    }
+    for watched in module.errors.iter().flat_map(|error| &error.watches) {
+        if let Watched::Input { bit, .. } = *watched
+            && inputs(bit)
+        {
+            no_inputs.entry(bit).or_insert(None);
         }
     }
     for mention in &module.mentions {

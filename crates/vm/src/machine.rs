@@ -13,7 +13,7 @@ use crate::stop::Stop;
 use obverse_bytecode::Verified;
 use obverse_isa::{Class, Instr, Setting};
 use obverse_tape::{NoTape, Note, Recorder, Tape};
-use obverse_workcell::{ToolId, Workcell};
+use obverse_workcell::{ToolId, Watch, Workcell};
 use std::collections::BTreeMap;
 use xxhash_rust::xxh3::Xxh3;
 
@@ -437,6 +437,12 @@ impl<'p> Machine<'p> {
     /// From here on, do otherwise than the program says, or no longer.
     pub fn alter(&mut self, alteration: Option<Alteration>) {
         self.alteration = alteration;
+    }
+
+    /// What the program has the workcell watch while it acts.
+    #[must_use]
+    pub fn watches(&self) -> &[Watch] {
+        &self.links.watches
     }
 
     /// A mark of where the machine is.

@@ -121,6 +121,7 @@ impl<'p> Machine<'p> {
         machine.links = Links {
             items: vec![obverse_workcell::ItemId(0); module.items.len()],
             tools: vec![0; module.tools.len()],
+            watches: Vec::new(),
             settings: snapshot.settings,
         };
         machine.tape = Some(Tape::from_streams(streams));

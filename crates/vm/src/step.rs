@@ -14,7 +14,7 @@ use crate::stop::{Refusal, Stop, Trap, TrapKind};
 use obverse_geometry::JointConfiguration;
 use obverse_isa::{Class, FunctionId, Instr, ReasonId, for_each_op, op};
 use obverse_tape::{NoTape, Record, record};
-use obverse_workcell::{MotionReport, Workcell};
+use obverse_workcell::{Fault, MotionReport, Workcell};
 
 /// What a step ended in, if the run does not go on.
 pub(crate) type Outcome = Result<(), Stop>;
@@ -87,6 +87,16 @@ macro_rules! act_arm {
     }};
 }
 
+/// What was noticed while an act was done is told behind it, once its output has settled.
+fn settle_noticed(done: &Done, host: &mut Host<'_>) -> Result<(), Failure> {
+    let Some((watch, fraction)) = done.noticed else { return Ok(()) };
+    host.cell.watch(&[]);
+    if done.rest_s > 0.0 {
+        host.cell.wait(done.rest_s)?;
+    }
+    Err(Fault::Watched { watch, fraction }.into())
+}
+
 impl Machine<'_> {
     /// One step forward of what the hot loop left.
     pub(crate) fn slow_forward(&mut self, host: &mut Host<'_>) -> Outcome {
@@ -128,7 +138,9 @@ impl Machine<'_> {
     /// Do the act at `effect`, whose operands are there, and go on at `next`.
     fn finish_forward(&mut self, effect: usize, host: &mut Host<'_>, next: usize) -> Outcome {
         let instr = self.program.module().code[effect];
+        self.watch(true, host.cell);
         let acted = self.act_forward(instr, host).and_then(|done| {
+            settle_noticed(&done, host)?;
             // What all tasks wait for is waited for in this act.
             Ok((done.report, self.end_of_turn(effect, &done, host)?))
         });
@@ -204,6 +216,7 @@ impl Machine<'_> {
     /// Undo the act at `effect`, whose operands are there, and stand before its statement.
     fn finish_reverse(&mut self, effect: usize, host: &mut Host<'_>) -> Outcome {
         let instr = self.program.module().code[effect];
+        self.watch(false, host.cell);
         let done = self
             .act_reverse(instr, host)
             .map_err(|failure| self.failed(failure, effect, Direction::Reverse))?;
@@ -212,6 +225,16 @@ impl Machine<'_> {
         self.state.place.pc = effect - usize::from(instr.prefix());
         self.tell(Direction::Reverse, effect, done.report, host);
         Ok(())
+    }
+
+    /// Have the workcell watch what the program says, if what comes is an act of the program, and
+    /// nothing where no error is raised.
+    pub(crate) fn watch(&self, is_of_program: bool, cell: &mut dyn Workcell) {
+        if self.links.watches.is_empty() {
+            return;
+        }
+        let raises = is_of_program && !self.state.is_compensating() && !self.is_cleaning_up();
+        cell.watch(if raises { &self.links.watches } else { &[] });
     }
 
     fn act_forward(&mut self, instr: Instr, host: &mut Host<'_>) -> Result<Done, Failure> {

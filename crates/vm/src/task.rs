@@ -215,6 +215,7 @@ impl Machine<'_> {
         let branches = self.branches.get(&fork.at);
         let end = branches.and_then(|branches| fork.turn_end(branches, fork.now_ns, None));
         if let Some(end) = end.filter(|end| end.now_ns > fork.now_ns) {
+            self.watch(false, host.cell);
             Self::wait_before(at, end.now_ns - fork.now_ns, host)?;
             self.tell(Direction::Forward, at, None, host);
         }
@@ -317,6 +318,7 @@ impl Machine<'_> {
         let Some(fork) = self.state.forks.last() else {
             return Self::trap_at(at, TrapKind::Foreign);
         };
+        self.watch(false, host.cell);
         Self::wait_before(at, fork.longest_rest_ns(), host)?;
         let functions = &self.program.module().functions;
         if let Some(tape) = &mut self.tape {

@@ -2,7 +2,7 @@
 //!
 //! What a call may change is said at each method; reading never changes anything.
 
-use crate::{Fault, ItemId, Motion, MotionReport, ToolId};
+use crate::{Fault, ItemId, Motion, MotionReport, ToolId, Watch};
 use obverse_geometry::{JointConfiguration, Pose};
 
 /// An arm with six joints.
@@ -83,6 +83,16 @@ pub trait Clock {
     fn wait(&mut self, duration_s: f64) -> Result<(), Fault>;
 }
 
+/// Looking at conditions while acts (motions, outputs, waits) are under way.
+pub trait Watching {
+    /// From the next act on, look at these conditions and no others. An act during which one comes
+    /// to hold ends in [`Fault::Watched`]: at that instant if the watch stops it, and otherwise
+    /// when it is finished. What holds already when it is first looked at, or has come to hold
+    /// while nobody looked, counts as coming to hold where an act begins; it counts once, until it
+    /// has been seen not to hold. Of several at one instant the first of the list is told.
+    fn watch(&mut self, watches: &[Watch]);
+}
+
 /// Random numbers for programs. The machine keeps the counter, as part of its state; the workcell
 /// keeps the seed.
 pub trait Dice {
@@ -108,7 +118,7 @@ pub trait Items {
 
 /// Everything a machine needs of a workcell.
 pub trait Workcell:
-    Arm + Safety + DigitalIo + Gripper + ForceTorque + Clock + Dice + Items
+    Arm + Safety + DigitalIo + Gripper + ForceTorque + Clock + Watching + Dice + Items
 {
     /// Every observable of the workcell that a program can command, as numbers: what the digest of
     /// a state covers beside the machine's own part. The clock, the world's randomness and sensor

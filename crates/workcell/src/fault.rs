@@ -2,6 +2,7 @@
 //!
 //! A fault is data with the numbers a person needs; what follows from it is decided elsewhere.
 
+use crate::watch::Watch;
 use std::fmt;
 
 /// Why the workcell did not do as commanded.
@@ -59,6 +60,14 @@ pub enum Fault {
         /// Where along the path, 0 to 1.
         fraction: f64,
     },
+    /// What was [watched](crate::Watching) has come to hold. The act was stopped there if the watch
+    /// stops, with nothing that has to be released; otherwise it was done all the same.
+    Watched {
+        /// What.
+        watch: Watch,
+        /// Where along the path, or in the time, 0 to 1.
+        fraction: f64,
+    },
     /// A command was refused since the arm is stopped and has not been released.
     Stopped,
     /// A number in a command is not one the workcell can act on.
@@ -103,6 +112,7 @@ kinds! {
     ProtectiveStop "protective_stop"
     EmergencyStop "emergency_stop"
     StoppedShort "stopped_short"
+    Watched "watched"
     Stopped "stopped"
     BadCommand "bad_command"
     Missing "missing"
@@ -121,6 +131,7 @@ impl Fault {
             Self::ProtectiveStop { .. } => FaultKind::ProtectiveStop,
             Self::EmergencyStop { .. } => FaultKind::EmergencyStop,
             Self::StoppedShort { .. } => FaultKind::StoppedShort,
+            Self::Watched { .. } => FaultKind::Watched,
             Self::Stopped => FaultKind::Stopped,
             Self::BadCommand { .. } => FaultKind::BadCommand,
             Self::Missing { .. } => FaultKind::Missing,
@@ -164,6 +175,10 @@ impl fmt::Display for Fault {
             }
             Self::StoppedShort { fraction } => {
                 write!(f, "the motion stopped short at {:.0} % of the way", fraction * 1e2)
+            }
+            Self::Watched { watch, fraction } => {
+                let done = if watch.stops { "stopped by" } else { "noticed" };
+                write!(f, "{done} {} at {:.0} % of the way", watch.condition, fraction * 1e2)
             }
             Self::Stopped => write!(f, "the arm is stopped and waits to be released"),
             Self::BadCommand { why } => write!(f, "the command makes no sense: {why}"),

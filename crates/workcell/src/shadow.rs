@@ -3,7 +3,7 @@
 
 use crate::{
     Arm, Clock, Dice, DigitalIo, Fault, ForceTorque, Goal, Gripper, ItemId, Items, Motion,
-    MotionEnd, MotionReport, Safety, ToolId, Workcell,
+    MotionEnd, MotionReport, Safety, ToolId, Watch, Watching, Workcell,
 };
 use obverse_geometry::{JointConfiguration, Pose};
 
@@ -102,6 +102,10 @@ impl Clock for Shadow {
     fn wait(&mut self, _: f64) -> Result<(), Fault> {
         Ok(())
     }
+}
+
+impl Watching for Shadow {
+    fn watch(&mut self, _: &[Watch]) {}
 }
 
 impl Dice for Shadow {

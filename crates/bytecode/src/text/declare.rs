@@ -6,7 +6,7 @@ use super::mention;
 use super::quote::{is_bare, unquote};
 use super::scan::{Scanner, Token};
 use crate::code::ModuleCode;
-use crate::fault::Bounds;
+use crate::fault::{Bounds, Watched};
 use crate::module::{
     Constant, Continuation, ErrorDeclaration, Function, FunctionKind, Item, Module, Otherwise,
     Recovery, Respond, Severity, SourceEntry, SourceFile, Variable,
@@ -108,10 +108,12 @@ pub const DIRECTIVES: &[&str] = &[
     ".source",
     ".then",
     ".tool",
+    ".watch",
 ];
 
 /// Those that say what an error does.
-const OF_ERRORS: [&str; 6] = [".bounds", ".on", ".otherwise", ".recover", ".respond", ".then"];
+const OF_ERRORS: [&str; 7] =
+    [".bounds", ".on", ".otherwise", ".recover", ".respond", ".then", ".watch"];
 
 /// The first pass over a text.
 pub(super) fn declare(text: &str) -> Declared<'_> {
@@ -345,6 +347,7 @@ impl<'t> Reader<'t> {
             name,
             severity: *severity.as_ref().unwrap_or(&Severity::Fatal),
             faults: Vec::new(),
+            watches: Vec::new(),
             bounds: Bounds::default(),
             recovery: Recovery::None,
             otherwise: Otherwise::Stop,
@@ -371,6 +374,7 @@ impl<'t> Reader<'t> {
                     declaration.faults.push(line.one_of()?);
                 }
             }
+            ".watch" => declaration.watches.push(watched(line)?),
             ".bounds" => declaration.bounds = bounds(line)?,
             ".respond" => declaration.respond = line.one_of()?,
             _ => declaration.continuation = line.one_of()?,
@@ -476,6 +480,22 @@ fn bounds(line: &mut Scanner) -> Result<Bounds, AsmError> {
         }
     }
     Ok(bounds)
+}
+
+fn watched(line: &mut Scanner) -> Result<Watched, AsmError> {
+    let word = line.word("condition")?;
+    match word.value {
+        "force" => Ok(Watched::Force { above_n: line.real("force in newtons")? }),
+        "input" => {
+            let bit = line.number("number of the input")?;
+            let level = line.word("level")?;
+            match level.value {
+                "low" | "high" => Ok(Watched::Input { bit, level: level.value == "high" }),
+                other => Err(line.error(level.at, none_of("level", other, ["low", "high"]))),
+            }
+        }
+        other => Err(line.error(word.at, none_of("condition", other, ["input", "force"]))),
+    }
 }
 
 fn variable(variables: &mut Vec<Variable>, line: &mut Scanner) -> Result<(), AsmError> {

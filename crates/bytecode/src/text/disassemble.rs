@@ -5,7 +5,7 @@ use super::mention;
 use super::names::{Names, Scope};
 use super::quote::{is_plain, quoted};
 use super::words::{self, Word};
-use crate::fault::Bounds;
+use crate::fault::{Bounds, Watched};
 use crate::module::{
     ErrorDeclaration, Extent, Function, Item, Module, Otherwise, Perturbation, Recovery, Reversal,
     SourceFile,
@@ -111,7 +111,16 @@ fn item(item: &Item, scope: &Scope, out: &mut String) {
 
 fn error_declaration(error: &ErrorDeclaration, scope: &Scope, out: &mut String) {
     let ErrorDeclaration { name: called, severity, .. } = error;
-    let ErrorDeclaration { faults, bounds, recovery, otherwise, respond, continuation, .. } = error;
+    let ErrorDeclaration {
+        faults,
+        watches,
+        bounds,
+        recovery,
+        otherwise,
+        respond,
+        continuation,
+        ..
+    } = error;
     let function = |index: u16| name(scope, OperandKind::Function, usize::from(index));
     let recovery = match recovery {
         Recovery::None => "none".to_owned(),
@@ -128,6 +137,9 @@ fn error_declaration(error: &ErrorDeclaration, scope: &Scope, out: &mut String) 
         let faults = faults.iter().map(|fault| fault.word()).collect::<Vec<_>>().join(" ");
         let _ = writeln!(out, "    .on {faults}");
     }
+    for watched in watches {
+        let _ = writeln!(out, "    .watch {}", watched_text(*watched));
+    }
     if *bounds != Bounds::default() {
         let _ = writeln!(out, "    .bounds{}", bounds_text(bounds));
     }
@@ -135,6 +147,15 @@ fn error_declaration(error: &ErrorDeclaration, scope: &Scope, out: &mut String) 
     let _ = writeln!(out, "    .otherwise {otherwise}");
     let _ = writeln!(out, "    .respond {}", respond.word());
     let _ = writeln!(out, "    .then {}", continuation.word());
+}
+
+fn watched_text(watched: Watched) -> String {
+    match watched {
+        Watched::Input { bit, level } => {
+            format!("input {bit} {}", if level { "high" } else { "low" })
+        }
+        Watched::Force { above_n } => format!("force {}", words::real(above_n)),
+    }
 }
 
 fn bounds_text(bounds: &Bounds) -> String {

@@ -17,6 +17,7 @@
 //! .error "NAME" SEVERITY                 warning, recoverable, fatal
 //!     .recover none | using FUNCTION
 //!     .on FAULT ...                      the faults that raise it, by the codes of a workcell
+//!     .watch input N low | input N high | force NEWTONS
 //!     .bounds [attempts N] [time SECONDS] [distance METRES]
 //!     .recover reversing DEPTH EXTENT [perturbed PATTERN METRES] [slower] [lighter]
 //!     .otherwise using FUNCTION | operator | stop

@@ -1,11 +1,14 @@
 //! Rules 1, 2 and 9: tables, functions, source map. Knows nothing of what instructions mean.
 
 use super::{Findings, Rule};
-use crate::fault::Bounds;
+use crate::fault::{Bounds, Watched};
 use crate::module::{FunctionKind, Mention, Mentioned, Module, Otherwise, Recovery, Variable};
 use crate::{Extent, Function};
 use obverse_isa::{Instr, Type};
 use std::collections::HashSet;
+
+/// The most that may be watched for one error.
+const MAX_WATCHES: usize = 64;
 
 pub(super) fn check(module: &Module, findings: &mut Findings) {
     lengths(module, findings);
@@ -123,6 +126,14 @@ fn faults(module: &Module, findings: &mut Findings) {
     for error in &module.errors {
         if !error.faults.is_sorted() || !error.faults.iter().all(|fault| taken.insert(*fault)) {
             let why = format!("error `{}` has a fault twice, or another error has it", error.name);
+            findings.of_module(Rule::Tables, why);
+        }
+        let is_force = |watched: &Watched| match watched {
+            Watched::Force { above_n } => *above_n > 0.0 && above_n.is_finite(),
+            Watched::Input { .. } => true,
+        };
+        if !error.watches.iter().all(is_force) || error.watches.len() > MAX_WATCHES {
+            let why = format!("what is watched for error `{}` makes no sense", error.name);
             findings.of_module(Rule::Tables, why);
         }
         let Bounds { attempts, time_s, distance_m } = error.bounds;

@@ -6,6 +6,7 @@ use obverse_bytecode::{
     ActionKind, Bounds, Constant, Continuation, Depth, ErrorDeclaration, Extent, FaultName,
     Function, FunctionKind, Item, Keyframe, Mention, Mentioned, Module, Otherwise, Pattern,
     Perturbation, Recovery, Respond, Reversal, Severity, SourceEntry, SourceFile, Variable,
+    Watched,
 };
 use obverse_isa::{Instr, OPS, Opcode, OperandError, OperandKind, Type};
 
@@ -101,6 +102,13 @@ fn errors() -> Vec<ErrorDeclaration> {
         name: format!("error {at}"),
         severity: [Severity::Warning, Severity::Recoverable, Severity::Fatal][at % 3],
         faults: FaultName::ALL.into_iter().rev().take(at).collect(),
+        watches: [
+            Watched::Input { bit: u16::MAX, level: at % 2 == 0 },
+            Watched::Force { above_n: f64::NEG_INFINITY },
+        ]
+        .into_iter()
+        .take(at % 3)
+        .collect(),
         bounds: Bounds {
             attempts: (at % 2 == 1).then_some(u32::MAX),
             time_s: (at % 3 == 1).then_some(f64::NAN),
@@ -237,6 +245,11 @@ fn arbitrary_error(u: &mut Unstructured) -> Result<ErrorDeclaration> {
         name: text(u)?,
         severity: pick(u, &[Severity::Warning, Severity::Recoverable, Severity::Fatal])?,
         faults: some(u, 3, |u| pick(u, &FaultName::ALL))?,
+        watches: some(u, 3, |u| {
+            let input = Watched::Input { bit: u.arbitrary()?, level: u.arbitrary()? };
+            let force = Watched::Force { above_n: u.arbitrary()? };
+            pick(u, &[input, force])
+        })?,
         bounds: Bounds {
             attempts: u.arbitrary()?,
             time_s: u.arbitrary()?,

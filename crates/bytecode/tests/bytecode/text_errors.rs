@@ -222,6 +222,10 @@ fn errors_and_their_recoveries() {
          collision, force_limit, protective_stop, emergency_stop, stopped_short, stopped, \
          bad_command, missing",
     );
+    clause(".watch", "7: the condition is missing");
+    clause(".watch cat", "8: `cat` is no condition; there are input, force");
+    clause(".watch input 3 up", "16: `up` is no level; there are low, high");
+    clause(".watch force", "13: the force in newtons is missing");
     clause(".bounds patience 1", "9: `patience` is no bound; there are attempts, time, distance");
     clause(".bounds time", "13: the time in seconds is missing");
     clause(".recover reversing fixed sequence \"slower\"", "35: `\"slower\"` is no change");

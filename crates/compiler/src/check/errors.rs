@@ -10,7 +10,7 @@ use obverse_bytecode::{
     Reversal, Severity,
 };
 use obverse_isa::{CheckpointId, FunctionId};
-use obverse_syntax::ast::{self, Bound, Change, ErrorClause, FaultWord, Name};
+use obverse_syntax::ast::{self, Bound, Cause, Change, ErrorClause, Name};
 use obverse_syntax::codes::Code;
 use obverse_syntax::diagnostic::Diagnostic;
 use obverse_syntax::span::{Span, Spanned};
@@ -23,7 +23,7 @@ struct Clauses<'a, 's> {
     otherwise: Option<(&'a ast::Otherwise<'s>, Span)>,
     respond: Option<(ast::Respond, Span)>,
     then: Option<(ast::Continuation, Span)>,
-    on: Option<(&'a [Spanned<FaultWord>], Span)>,
+    on: Option<(&'a [Cause<'s>], Span)>,
     give_up: Option<(&'a [Bound<'s>], Span)>,
 }
 
@@ -33,6 +33,7 @@ pub(super) fn undefined(name: &str) -> obverse_bytecode::ErrorDeclaration {
         name: name.to_owned(),
         severity: Severity::Recoverable,
         faults: Vec::new(),
+        watches: Vec::new(),
         bounds: Bounds::default(),
         recovery: Recovery::None,
         otherwise: Otherwise::Stop,
@@ -76,8 +77,9 @@ impl<'s> Checker<'s> {
             Some(ast::Respond::AfterSequence) => Respond::AfterSequence,
             Some(ast::Respond::AfterAction) | None => Respond::AfterAction,
         };
-        let faults = clauses.on.map_or(Vec::new(), |(words, _)| self.faults(words));
-        if !faults.is_empty() {
+        let causes = clauses.on.map_or(&[][..], |(causes, _)| causes);
+        let (faults, watches) = (self.faults(causes), self.watches(causes));
+        if !causes.is_empty() {
             self.names.mark_used(declaration.name.value);
         }
         let bounds = clauses.give_up.map_or(Bounds::default(), |(bounds, _)| self.bounds(bounds));
@@ -90,6 +92,7 @@ impl<'s> Checker<'s> {
                 name,
                 severity,
                 faults,
+                watches,
                 bounds,
                 recovery,
                 otherwise,
@@ -119,7 +122,7 @@ impl<'s> Checker<'s> {
                     ("respond", once(&mut clauses.respond, *respond, *span))
                 }
                 ErrorClause::Then(then) => ("then", once(&mut clauses.then, *then, *span)),
-                ErrorClause::On(words) => ("on", once(&mut clauses.on, words.as_slice(), *span)),
+                ErrorClause::On(causes) => ("on", once(&mut clauses.on, causes.as_slice(), *span)),
                 ErrorClause::GiveUp(bounds) => {
                     ("give up", once(&mut clauses.give_up, bounds.as_slice(), *span))
                 }

@@ -8,20 +8,23 @@ use super::names::Meaning;
 use crate::faults::{NamedFault, named};
 use crate::tree::{ExpressionKind, StatementKind};
 use crate::types::ValueType;
-use obverse_bytecode::{Bounds, FaultName};
-use obverse_syntax::ast::{self, Bound, FaultWord, Name};
+use obverse_bytecode::{Bounds, FaultName, Watched};
+use obverse_syntax::ast::{self, Bound, Cause, FaultWord, Name};
 use obverse_syntax::codes::Code;
 use obverse_syntax::diagnostic::Diagnostic;
 use obverse_syntax::span::{Span, Spanned};
 
 /// How many attempts an incident may have at the most: as many as a jump can compare with.
 const MAX_ATTEMPTS: u64 = i16::MAX as u64;
+/// How many conditions an error may have watched, as a module may.
+const MAX_WATCHES: usize = 64;
 
 impl<'s> Checker<'s> {
     /// `on protective stop, collision`; each fault raises one error.
-    pub(super) fn faults(&mut self, words: &[Spanned<FaultWord>]) -> Vec<FaultName> {
+    pub(super) fn faults(&mut self, causes: &[Cause<'s>]) -> Vec<FaultName> {
         let mut faults = Vec::new();
-        for Spanned { value: word, span } in words {
+        for cause in causes {
+            let Cause::Fault(Spanned { value: word, span }) = cause else { continue };
             match self.faults.get(word).copied() {
                 Some(first) => self.report_fault_twice(*word, *span, first),
                 None => {
@@ -33,6 +36,43 @@ impl<'s> Checker<'s> {
         }
         faults.sort_unstable();
         faults
+    }
+
+    /// `on input door_closed low, force > 30 N`
+    pub(super) fn watches(&mut self, causes: &[Cause<'s>]) -> Vec<Watched> {
+        let mut watches = Vec::new();
+        for cause in causes {
+            let (watched, span) = match cause {
+                Cause::Fault(_) => continue,
+                Cause::Input { input, high, span } => {
+                    (Watched::Input { bit: self.input(*input).0, level: *high }, *span)
+                }
+                Cause::Force(above) => {
+                    (Watched::Force { above_n: self.force_above(above) }, above.span)
+                }
+            };
+            if watches.len() == MAX_WATCHES {
+                let message = format!("an error watches {MAX_WATCHES} conditions at the most");
+                self.reports.error(Code::OutOfRange, span, message, "one too many");
+                break;
+            }
+            watches.push(watched);
+        }
+        watches
+    }
+
+    /// A force in newtons, above nothing.
+    fn force_above(&mut self, written: &ast::Expression<'s>) -> f64 {
+        let value = self.constant(written);
+        match self.fit(value, &Need::new(ValueType::FORCE, "`on force >`")).kind {
+            ExpressionKind::Real(above_n) if above_n > 0.0 => above_n,
+            ExpressionKind::Real(_) => {
+                let message = "a force that is watched is more than nothing".to_owned();
+                self.reports.error(Code::OutOfRange, written.span, message, "not more than zero");
+                1.0
+            }
+            _ => 1.0,
+        }
     }
 
     fn report_fault_twice(&mut self, word: FaultWord, again: Span, first: Span) {

@@ -34,15 +34,16 @@ impl Lower<'_> {
         }
     }
 
-    /// In an advanced move or an I/O operation: it ends here if its act has raised an error that
-    /// its caller responds to now, and does more than note it.
+    /// In an advanced move or an I/O operation: it ends here if its act has been ended by an error
+    /// that its caller responds to now, and does more than note it.
     pub(super) fn end_if_raised(&mut self, raised: &[ErrorId]) {
         if self.frame.role != Role::Ends {
             return;
         }
         for &error in raised {
             let is_noted = self.effects.response(error) == Response::Ignore;
-            if !is_noted && !is_for_caller(self.declared(error)) {
+            let declared = self.declared(error);
+            if !is_noted && declared.ends_acts() && !is_for_caller(declared) {
                 self.push(Instr::PushRaised { error });
                 let mark = self.code.jump(|target| Instr::JumpIf { prefix: PREFIX, target });
                 self.frame.exits.push(mark);

@@ -142,7 +142,7 @@ impl<'s> Walk<'s> {
         }
     }
 
-    fn signal(&mut self, signal: Spanned<Signal<'s>>) {
+    pub(super) fn signal(&mut self, signal: Spanned<Signal<'s>>) {
         if let Signal::Name(name) = signal.value {
             self.uses([Spanned::new(name, signal.span)]);
         }

@@ -4,9 +4,9 @@ use super::scopes::{EVERYWHERE, Scopes};
 use super::{Role, SymbolId, SymbolKind, Symbols};
 use crate::types::ValueType;
 use obverse_syntax::ast::{
-    AdvancedMove, Behaviour, Bound, Change, ErrorClause, ErrorDeclaration, Extent, IoOperation,
-    Item, ItemDeclaration, MoveClause, Name, Otherwise, Program, Recovery, Sequence, SignalKind,
-    VariableDeclaration, Vector,
+    AdvancedMove, Behaviour, Bound, Cause, Change, ErrorClause, ErrorDeclaration, Extent,
+    IoOperation, Item, ItemDeclaration, MoveClause, Name, Otherwise, Program, Recovery, Sequence,
+    SignalKind, VariableDeclaration, Vector,
 };
 use obverse_syntax::span::Span;
 use std::collections::HashMap;
@@ -189,8 +189,16 @@ impl<'s> Walk<'s> {
                 ErrorClause::Severity(_)
                 | ErrorClause::Otherwise(Otherwise::Operator | Otherwise::Stop)
                 | ErrorClause::Respond(_)
-                | ErrorClause::Then(_)
-                | ErrorClause::On(_) => {}
+                | ErrorClause::Then(_) => {}
+                ErrorClause::On(causes) => {
+                    for cause in causes {
+                        match cause {
+                            Cause::Fault(_) => {}
+                            Cause::Input { input, .. } => self.signal(*input),
+                            Cause::Force(above) => self.expression(above),
+                        }
+                    }
+                }
             }
         }
     }

@@ -1,7 +1,7 @@
 //! Errors that faults raise, what an incident may cost, what must hold before, and the cleanup.
 
 use crate::common::{check_code, findings, function, listing, module};
-use obverse_bytecode::{Bounds, FaultName};
+use obverse_bytecode::{Bounds, FaultName, Watched};
 use obverse_isa::Instr;
 
 const HOME: &str = "joints a = [0, -90, 90, -90, -90, 0] deg\n";
@@ -22,6 +22,29 @@ fn a_module_says_which_faults_raise_an_error_and_what_an_incident_may_cost() {
     assert_eq!(f.faults, [FaultName::ProtectiveStop]);
     let bounds = Bounds { attempts: Some(6), time_s: Some(90.0), distance_m: Some(2.0) };
     assert_eq!((e.bounds, f.bounds), (bounds, Bounds::default()));
+}
+
+#[test]
+fn a_module_says_what_is_watched_for_an_error() {
+    let module = module(
+        "input door = 3
+         error e { on input door low, force > 2 * 15 N respond at once }
+         error f { on input 2 high }
+         sequence main { move 1 mm up }",
+    );
+    let [e, f] = &module.errors[..] else { panic!("two errors") };
+    let door = Watched::Input { bit: 3, level: false };
+    assert_eq!(e.watches, [door, Watched::Force { above_n: 30.0 }]);
+    assert_eq!((e.interrupts(), f.interrupts()), (true, false));
+    for (wrong, code) in [
+        ("on force > 3 mm", "E0202"),
+        ("on force > 0 N", "E0210"),
+        ("on input nowhere high", "E0101"),
+    ] {
+        let source = format!("error e {{ {wrong} }} sequence main {{ move 1 mm up }}");
+        let found = findings(&source);
+        assert!(found.iter().any(|it| it.contains(code)), "{wrong}: {found:?}");
+    }
 }
 
 #[test]

@@ -3,8 +3,8 @@
 use super::piece::{Column, Glue, Member};
 use super::writer::{Style, Writer};
 use crate::ast::{
-    Allow, Behaviour, Bound, Change, Continuation, Depth, ErrorClause, Expression, Extent, Item,
-    JointsDeclaration, Keyframe, MoveClause, Name, Otherwise, Parameter, Recovery, Respond,
+    Allow, Behaviour, Bound, Cause, Change, Continuation, Depth, ErrorClause, Expression, Extent,
+    Item, JointsDeclaration, Keyframe, MoveClause, Name, Otherwise, Parameter, Recovery, Respond,
     Sequence, Severity, SignalKind, ValueRange,
 };
 use crate::span::Spanned;
@@ -185,9 +185,20 @@ impl<'s> Writer<'s> {
                     Continuation::Stop => &["stop"],
                 });
             }
-            ErrorClause::On(faults) => {
+            ErrorClause::On(causes) => {
                 self.word("on");
-                self.in_a_row(faults, |writer, fault| writer.several(fault.value.text()));
+                self.in_a_row(causes, |writer, cause| match cause {
+                    Cause::Fault(fault) => writer.several(fault.value.text()),
+                    Cause::Input { input, high, .. } => {
+                        writer.word("input");
+                        writer.signal(input.value);
+                        writer.word(if *high { "high" } else { "low" });
+                    }
+                    Cause::Force(above) => {
+                        writer.words(&["force", ">"]);
+                        writer.expression(above);
+                    }
+                });
             }
             ErrorClause::GiveUp(bounds) => {
                 self.words(&["give", "up", "after"]);

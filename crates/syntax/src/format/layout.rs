@@ -166,7 +166,8 @@ fn row_length(members: &[Member<'_>], indent: usize) -> usize {
     if !members.first().is_some_and(is_simple) {
         return 1;
     }
-    let count = 1 + members[1..].iter().take_while(follows).count();
+    // More than there are columns do not fit, and looking on would be done again for each of them.
+    let count = 1 + members[1..].iter().take(MAX_COLUMNS).take_while(follows).count();
     let mut cells = Cells::default();
     cells.row(&members[..count], false);
     if indent + width(&cells.0) <= MAX_COLUMNS { count } else { 1 }

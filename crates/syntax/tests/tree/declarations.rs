@@ -203,6 +203,20 @@ fn an_error_names_faults_and_what_an_incident_may_cost() {
         let clauses = clauses(&format!("on missing, {}", fault.text()));
         assert!(clauses.contains(&format!("value: {fault:?}, span")), "{clauses}");
     }
+    let source = "error e { on input door low, force > 30 N, input 3 high, collision }";
+    let clauses_of = error_clauses(source);
+    let [ErrorClause::On(causes)] = &clauses_of[..] else { panic!("{clauses_of:?}") };
+    let [
+        Cause::Input { input, high, .. },
+        Cause::Force(force),
+        Cause::Input { .. },
+        Cause::Fault(_),
+    ] = &causes[..]
+    else {
+        panic!("{causes:?}")
+    };
+    assert_eq!((input.value, *high), (Signal::Name("door"), false));
+    assert_eq!(show(force), "30.0N");
     let bounds = "error e { give up after 6 times, 90 s, limit * 2 }";
     let clauses = error_clauses(bounds);
     let [ErrorClause::GiveUp(bounds)] = &clauses[..] else { panic!("{clauses:?}") };

@@ -6,7 +6,7 @@ use super::{Callee, Generator, Parameter};
 use arbitrary::Result;
 
 /// Every fault that a program can name.
-const FAULTS: [&str; 9] = [
+const FAULTS: [&str; 12] = [
     "joint limit",
     "out of reach",
     "singularity",
@@ -16,6 +16,9 @@ const FAULTS: [&str; 9] = [
     "emergency stop",
     "stopped short",
     "missing",
+    "input 1 high",
+    "input 0 low",
+    "force > 2 * 20 N",
 ];
 
 /// How deep a recursion goes at the most.
@@ -341,7 +344,8 @@ impl Generator<'_, '_> {
         Ok(items)
     }
 
-    /// The faults that raise an error, of those that raise none yet; whether any does.
+    /// The faults that raise an error and what is watched for it, of those that raise none yet;
+    /// whether any does.
     fn faults(&mut self, left: &mut Vec<&'static str>) -> Result<bool> {
         if !self.one_in(3)? {
             return Ok(false);

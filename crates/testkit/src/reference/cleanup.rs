@@ -4,7 +4,7 @@
 use super::error::{Response, is_for_caller, response};
 use super::{Frame, Interpreter, Run};
 use obverse_syntax::ast::{
-    Block, ErrorClause, ErrorDeclaration, FaultWord, Item, MoveClause, StatementKind,
+    Block, Cause, ErrorClause, ErrorDeclaration, FaultWord, Item, MoveClause, StatementKind,
 };
 use std::collections::BTreeSet;
 
@@ -125,7 +125,10 @@ impl<'p> Interpreter<'p, '_> {
     fn faulty(&self, is_kind: impl Fn(FaultWord) -> bool) -> Vec<&'p str> {
         self.errors(|error| {
             error.clauses.iter().any(|clause| match &clause.value {
-                ErrorClause::On(faults) => faults.iter().any(|fault| is_kind(fault.value)),
+                ErrorClause::On(causes) => causes.iter().any(|cause| match cause {
+                    Cause::Fault(fault) => is_kind(fault.value),
+                    Cause::Input { .. } | Cause::Force(_) => true,
+                }),
                 _ => false,
             })
         })

@@ -9,7 +9,7 @@ use crate::values::Settings;
 use obverse_bytecode::Module;
 use obverse_geometry::JointConfiguration;
 use obverse_isa::{ErrorId, LocalId, Setting, SlotId, SpeedId};
-use obverse_workcell::{MotionReport, Speed, ToolId, Workcell};
+use obverse_workcell::{Fault, Motion, MotionReport, Speed, ToolId, Watch, Workcell};
 
 pub(crate) struct Acts<'a> {
     pub(crate) operands: &'a [u64],
@@ -42,6 +42,8 @@ pub(crate) struct Done {
     pub(crate) report: Option<MotionReport>,
     /// Where the motion began that it made aside of where the program says.
     pub(crate) aside: Option<JointConfiguration>,
+    /// What came to hold meanwhile that is to be told when it is done, and where.
+    pub(crate) noticed: Option<(Watch, f64)>,
     /// How long it had the workcell wait, in seconds.
     pub(crate) waited_s: f64,
     /// How long its task is still to wait while others go on, in seconds.
@@ -86,9 +88,34 @@ impl Acts<'_> {
     /// # Errors
     /// A fault of the workcell.
     pub(crate) fn wait(&mut self, duration_s: f64) -> Result<(), Failure> {
-        self.cell.wait(duration_s)?;
+        let waited = self.cell.wait(duration_s);
+        self.noting(waited)?;
         self.done.waited_s += duration_s;
         Ok(())
+    }
+
+    /// Have the arm move.
+    ///
+    /// # Errors
+    /// A fault of the workcell.
+    pub(crate) fn execute(&mut self, motion: &Motion) -> Result<MotionReport, Failure> {
+        let executed = self.cell.execute(motion).map(|_| ());
+        self.noting(executed)?;
+        Ok(self.cell.last_motion())
+    }
+
+    /// What has come to hold and stopped nothing is told when the act is done.
+    ///
+    /// # Errors
+    /// Any other fault.
+    pub(crate) fn noting(&mut self, acted: Result<(), Fault>) -> Result<(), Failure> {
+        match acted {
+            Err(Fault::Watched { watch, fraction }) if !watch.stops => {
+                self.done.noticed.get_or_insert((watch, fraction));
+                Ok(())
+            }
+            acted => Ok(acted?),
+        }
     }
 
     /// The module's joint configuration at a place of the stack picture.

@@ -8,7 +8,8 @@ use obverse_tape::record::Bit;
 
 impl Acts<'_> {
     fn set_and_settle(&mut self, bit: u16, level: bool, settle_s: f64) -> Result<(), Failure> {
-        self.cell.set_output(bit, level)?;
+        let set = self.cell.set_output(bit, level);
+        self.noting(set)?;
         self.rest(settle_s)
     }
 }

@@ -22,7 +22,7 @@ impl Acts<'_> {
             Some(alteration) => self.altered(alteration, motion)?,
             None => motion,
         };
-        self.done.report = Some(self.cell.execute(&motion)?);
+        self.done.report = Some(self.execute(&motion)?);
         Ok(())
     }
 
@@ -30,7 +30,7 @@ impl Acts<'_> {
     fn altered(&mut self, alteration: &Alteration, motion: Motion) -> Result<Motion, Failure> {
         let (before, mut motion) = alteration.of(self.pc, motion);
         let Some(before) = before else { return Ok(motion) };
-        self.cell.execute(&before)?;
+        self.execute(&before)?;
         self.done.aside = Some(self.cell.joints());
         if let Goal::Displaced { from, .. } | Goal::Turned { from, .. } = &mut motion.goal {
             *from = self.cell.joints();

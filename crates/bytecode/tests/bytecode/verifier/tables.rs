@@ -117,6 +117,12 @@ fn rule_1_a_fault_raises_one_error_within_bounds() {
         refused(build(&format!(".bounds {bounds}")), Rule::Tables, None, senseless);
     }
     accepted(build(".on collision missing\n.bounds attempts 1 time 0.5 distance 2"));
+    let senseless = "what is watched for error `e` makes no sense";
+    for watched in ["force 0", "force -1", "force 0x7ff8000000000000"] {
+        refused(build(&format!(".watch {watched}")), Rule::Tables, None, senseless);
+    }
+    refused(build(&".watch input 1 low\n".repeat(65)), Rule::Tables, None, senseless);
+    accepted(build(&".watch input 1 low\n.watch force 0.5\n".repeat(32)));
 }
 
 #[test]
