@@ -4,6 +4,7 @@
 //! The cell is a bare arm with an input that comes high at a time, or never: until then the error
 //! of the programs here is raised, so that what is tried against it can be read off.
 
+mod again;
 mod cleanup;
 mod sites;
 mod watched;

@@ -25,12 +25,13 @@ pub struct Action {
     pub steps: u64,
     /// The first of its instructions that was told of.
     pub pc: u32,
-    /// When it began, in seconds of the workcell's clock.
+    /// When it began, in seconds of the workcell's clock; later by what has been taken back since,
+    /// so that from then to now is what came of it and stayed.
     pub began_s: f64,
     /// Whether nothing but motions of the arm has been commanded in it, outside of blocks with a
     /// reverse of their own.
     pub only_moves: bool,
-    /// How far the arm had gone when it began, in metres.
+    /// How far the arm had gone when it began, in metres; further by what has been taken back.
     pub began_way_m: f64,
     /// How many actions of the run lie before it.
     pub number: u64,
@@ -365,6 +366,9 @@ impl<'m> Trail<'m> {
     /// The run was taken back to where so many instructions lay before it.
     pub fn cut(&mut self, steps: u64) {
         let left = self.actions.partition_point(|action| action.steps < steps);
+        if let Some(first) = self.actions.get(left) {
+            self.pass_over(self.now_s - first.began_s, self.way_m - first.began_way_m);
+        }
         self.actions.truncate(left);
         for action in &mut self.actions {
             action.ended = action.ended.filter(|ended| *ended <= steps);
@@ -372,6 +376,19 @@ impl<'m> Trail<'m> {
         self.motions.retain(|motion| motion.steps < steps);
         let left = self.posts.partition_point(|(at, _)| *at < steps);
         self.posts.truncate(left);
+    }
+
+    /// So much time and way went into what is taken back, there and back: what led there took none
+    /// of it, and will not take it when it is done again.
+    fn pass_over(&mut self, time_s: f64, way_m: f64) {
+        for action in &mut self.actions {
+            action.began_s += time_s;
+            action.began_way_m += way_m;
+        }
+        for motion in &mut self.motions {
+            motion.began_s += time_s;
+            motion.began_way_m += way_m;
+        }
     }
 
     /// The run was taken back into an act, at this instruction, that so many instructions lie

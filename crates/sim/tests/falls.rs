@@ -52,7 +52,7 @@ fn what_falls_beside_everything_is_gone() {
     sim.execute(&shift(sim.joints(), 0.4)).unwrap();
     sim.set_output(0, false).unwrap();
     assert_eq!(sim.true_pose(PIN), None);
-    assert!(is_wrong(&sim, CauseKind::Gone));
+    assert!(is_wrong(&sim, CauseKind::Absent));
 }
 
 #[test]
