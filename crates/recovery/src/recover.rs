@@ -504,9 +504,8 @@ impl<'p, C: Workcell> Run<'_, 'p, '_, C> {
                 return;
             }
             self.machine.alter(None);
-            let is_vain = is_over && self.is_stopping;
-            let outcome =
-                if is_vain { Outcome::GivenUp(GiveUp::Strategy) } else { Outcome::Recovered };
+            let is_lost = is_over && self.is_stopping;
+            let outcome = if is_lost { Outcome::Lost } else { Outcome::Recovered };
             if let Some(incident) = self.open.pop() {
                 self.close(incident, outcome);
             }
@@ -516,18 +515,16 @@ impl<'p, C: Workcell> Run<'_, 'p, '_, C> {
     fn close_all(&mut self, ending: &Ending) {
         let is_over = *ending == Ending::Finished;
         while let Some(incident) = self.open.pop() {
-            let outcome =
-                if is_over { Outcome::Recovered } else { Outcome::GivenUp(GiveUp::Strategy) };
+            let outcome = if is_over { Outcome::Recovered } else { Outcome::Lost };
             self.close(incident, outcome);
         }
     }
 
     fn close(&mut self, mut incident: Incident, outcome: Outcome) {
         incident.outcome = Some((outcome, self.cell.now_s()));
-        let depths = incident.depths();
-        if self.recovery.remembers && !depths.contains(&0) {
+        let lesson = incident.lesson().filter(|_| self.recovery.remembers);
+        if let Some((depths, was_enough)) = lesson {
             let error = &self.declared(&incident).name;
-            let was_enough = outcome == Outcome::Recovered;
             self.recovery.memory.learn(error, &incident.place, &depths, was_enough);
         }
         if outcome == Outcome::Recovered {

@@ -57,11 +57,8 @@ impl Case for MachineCase<'_> {
 
     fn learn(&self, memory: &mut Memory, outcome: &Outcome) {
         for incident in &outcome.incidents {
-            // In place nothing was gone back by, so that nothing is learned of how far is enough.
-            if !incident.depths.contains(&0) {
-                let depths: Vec<usize> =
-                    incident.depths.iter().map(|depth| *depth as usize).collect();
-                memory.learn(&incident.error, &incident.place, &depths, incident.recovered);
+            if let Some((depths, was_enough)) = &incident.lesson {
+                memory.learn(&incident.error, &incident.place, depths, *was_enough);
             }
         }
     }
@@ -210,6 +207,7 @@ fn incident(
         place: found.place.clone(),
         depths: found.attempts.iter().map(|attempt| attempt.actions as u32).collect(),
         recovered: is_recovered || put_right,
+        lesson: found.lesson(),
         cause,
     }
 }
