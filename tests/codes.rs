@@ -4,14 +4,19 @@
 use obverse_bytecode::ModuleCode;
 use obverse_codes::Page;
 use obverse_codes::index::page;
+use obverse_recovery::MemoryCode;
 use obverse_sim::CellCode;
 use obverse_syntax::codes::Code;
 
 const PATH: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/docs/codes.md");
 
-/// The pages of the codes of programs, of workcells, and of assembly text and modules.
+/// The pages of the codes of programs, of workcells, of assembly text and modules, and of memories.
 fn pages() -> Vec<Page> {
-    Code::pages().chain(CellCode::pages()).chain(ModuleCode::pages()).collect()
+    Code::pages()
+        .chain(CellCode::pages())
+        .chain(ModuleCode::pages())
+        .chain(MemoryCode::pages())
+        .collect()
 }
 
 #[test]

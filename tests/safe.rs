@@ -7,7 +7,7 @@
 //! also while a recovery is under way. `SAFE_RUNS` sets how many runs there are of each program,
 //! over all strategies.
 
-use obverse_bytecode::{ErrorDeclaration, FaultName, Severity, Verified, verify};
+use obverse_bytecode::{ErrorDeclaration, FaultName, Severity, Verified, Watched, verify};
 use obverse_compiler::compile_files;
 use obverse_isa::{Class, Family, Instr};
 use obverse_recovery::{
@@ -65,6 +65,8 @@ fn load(path: &Path) -> Program {
     let is_more = |error: &&mut ErrorDeclaration| error.severity != Severity::Warning;
     if let (false, Some(error)) = (names_faults, module.errors.iter_mut().find(is_more)) {
         error.faults = FaultName::ALL.to_vec();
+        // A cell says of what is watched whose it is; here always that of the first error.
+        error.watches = vec![Watched::Force { above_n: 1e6 }];
     }
     let cell = folder.join(module.cell.as_ref().unwrap());
     let cell = Cell::parse(&std::fs::read_to_string(cell).unwrap()).unwrap();

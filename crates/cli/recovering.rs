@@ -1,12 +1,15 @@
 //! Recoveries at the edge: the strategy that was asked for, the memory on disk, a person at the
 //! terminal, and the story of a recovery in words and for machines.
 
-use crate::problem::Problem;
+use crate::load::Program;
+use crate::problem::{Message, Problem};
 use crate::report::{self, Report};
 use crate::story::{self, Story};
 use crate::{files, write};
 use obverse_bytecode::Module;
-use obverse_recovery::{GiveUp, Incident, Memory, Operator, Outcome, Step, Strategy, Teller, Why};
+use obverse_recovery::{
+    GiveUp, Incident, Memory, MemoryCode, Operator, Outcome, Step, Strategy, Subject, Teller, Why,
+};
 use obverse_vm::Alteration;
 use obverse_workcell::{Fault, Workcell};
 use serde_json::{Value, json};
@@ -40,29 +43,74 @@ fn strategy(text: &str) -> Result<Strategy, String> {
     }
 }
 
-/// The memory of a file; an empty one where there is no file yet, or none was named.
-///
-/// # Errors
-/// The file cannot be read, or is none.
-pub(crate) fn memory(path: Option<&Path>) -> Result<Memory, Problem> {
-    match path {
-        Some(path) if path.exists() => {
-            let cannot = |why: String| Problem::of_file(path, why);
-            let bytes = files::read(path).map_err(cannot)?;
-            let text = String::from_utf8(bytes);
-            let text = text.map_err(|_| cannot("this is no text".to_owned()))?;
-            Memory::from_text(&text).map_err(|error| Problem::of_file(path, error))
-        }
-        _ => Ok(Memory::default()),
+/// What was learned before a run, and the file that it is kept in.
+pub(crate) struct Kept {
+    path: Option<PathBuf>,
+    subject: Subject,
+    before: Memory,
+}
+
+impl Kept {
+    /// That of a file, of a program in a workcell: empty where there is no file yet, or none was
+    /// named.
+    ///
+    /// # Errors
+    /// The file cannot be read, or is no memory of these.
+    pub(crate) fn read(
+        path: Option<&Path>,
+        program: &Program,
+        cell: &str,
+    ) -> Result<Self, Problem> {
+        let subject = subject(program, cell);
+        let before = path.map_or(Ok(Memory::default()), |path| remembered(path, &subject))?;
+        Ok(Self { path: path.map(Path::to_owned), subject, before })
+    }
+
+    /// What was learned before the run.
+    pub(crate) fn memory(&self) -> Memory {
+        self.before.clone()
+    }
+
+    /// Keep what the run has learned beside what others have meanwhile.
+    ///
+    /// # Errors
+    /// The file cannot be written, or is none any more; what was there is there still.
+    pub(crate) fn keep(&self, memory: &Memory) -> Result<(), Problem> {
+        let Some(path) = &self.path else { return Ok(()) };
+        let _lock = write::lock(path)?;
+        let mut all = remembered(path, &self.subject)?;
+        all.merge(&memory.since(&self.before));
+        write::file(path, all.to_text(&self.subject).as_bytes())
     }
 }
 
-/// Keep a memory.
+/// Of what a memory is: by the names of files, without their folders; of a module, by that of its
+/// source.
+pub(crate) fn subject(program: &Program, cell: &str) -> Subject {
+    let name = |path: &Path| match path.file_name() {
+        Some(name) => name.to_string_lossy().into_owned(),
+        None => path.display().to_string(),
+    };
+    let source = program.verified.module().sources.first();
+    let program = source.map_or(program.path.as_path(), |source| Path::new(&source.name));
+    Subject { program: name(program), cell: name(Path::new(cell)) }
+}
+
+/// The memory of a file; an empty one where there is no file yet.
 ///
 /// # Errors
-/// The file cannot be written; what was there is there still.
-pub(crate) fn keep(memory: &Memory, path: Option<&Path>) -> Result<(), Problem> {
-    path.map_or(Ok(()), |path| write::file(path, memory.to_text().as_bytes()))
+/// The file cannot be read, or is no memory of this.
+pub(crate) fn remembered(path: &Path, of: &Subject) -> Result<Memory, Problem> {
+    if !path.exists() {
+        return Ok(Memory::default());
+    }
+    let bytes = files::read(path).map_err(|why| Problem::of_file(path, why))?;
+    let wrong = |text: String, code: MemoryCode| {
+        Problem::several(vec![Message::of_file(path, text).coded(code.as_str())])
+    };
+    let text = String::from_utf8(bytes)
+        .map_err(|error| wrong(format!("not text: {error}"), MemoryCode::Malformed))?;
+    Memory::from_text(&text, of).map_err(|error| wrong(error.to_string(), error.code()))
 }
 
 /// The person at the terminal, if there is one, or so many releases given beforehand.
@@ -278,6 +326,7 @@ pub(crate) fn incidents(module: &Module, incidents: &[Incident]) -> Value {
         let outcome = match incident.outcome {
             Some((Outcome::Recovered, _)) => "recovered",
             Some((Outcome::GivenUp(why), _)) => why.code(),
+            Some((Outcome::Lost, _)) => "lost",
             None => "open",
         };
         json!({

@@ -121,6 +121,21 @@ pub(crate) fn file(path: &Path, bytes: &[u8]) -> Result<(), Problem> {
     })
 }
 
+/// Wait until nobody else is changing a file, and keep others from it as long as this lives. What
+/// is locked is a neighbour of the file, which takes another one's place when it is written.
+pub(crate) fn lock(path: &Path) -> Result<fs::File, Problem> {
+    let target = target(path)?;
+    let mut name = std::ffi::OsString::from(".");
+    name.push(target.file_name().unwrap_or_default());
+    name.push(".lock");
+    let neighbour = target.with_file_name(name);
+    let opened = fs::File::options().create(true).write(true).truncate(false).open(neighbour);
+    let locked = opened.and_then(|file| file.lock().map(|()| file));
+    locked.map_err(|error| {
+        Problem::of_file(path, format!("cannot be locked to write it: {}", plain(&error)))
+    })
+}
+
 /// A text without what would command a terminal; every byte stays in its place.
 pub(crate) fn printable(text: &str) -> Cow<'_, str> {
     let is_command = |c: char| c.is_control() && !matches!(c, '\n' | '\r' | '\t');

@@ -8,6 +8,7 @@ mod imports;
 mod invert;
 mod learn;
 mod lsp;
+mod memory;
 mod moves;
 mod reach;
 mod support;

@@ -6,6 +6,7 @@
 
 mod again;
 mod cleanup;
+mod pairs;
 mod sites;
 mod watched;
 

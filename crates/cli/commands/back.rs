@@ -3,7 +3,7 @@
 use super::Result;
 use super::run;
 use crate::load;
-use crate::recovering;
+use crate::recovering::Kept;
 use crate::report;
 use crate::write;
 use obverse_recovery::Ending;
@@ -17,7 +17,8 @@ pub(crate) fn run(arguments: &Arguments) -> Result {
     let (mut cell, file) = run::workcell(arguments, &program)?;
     let mut machine = load::machine(&program, &cell, &file)?;
     let module = program.verified.module();
-    let mut memory = recovering::memory(arguments.recovering.memory.as_deref())?;
+    let kept = Kept::read(arguments.recovering.memory.as_deref(), &program, &file.name)?;
+    let mut memory = kept.memory();
     run::head(arguments, &file.name);
     let start = machine.digest(&cell);
     let (there, _) = run::there(arguments, &mut machine, &mut cell, &mut memory);
@@ -33,8 +34,8 @@ pub(crate) fn run(arguments: &Arguments) -> Result {
         cell.release();
     }
     let back = run::back(arguments, &mut machine, &mut cell);
-    let recorded = run::record(arguments, &program, &machine, &cell, &back)
-        .and_then(|()| recovering::keep(&memory, arguments.recovering.memory.as_deref()));
+    let recorded =
+        run::record(arguments, &program, &machine, &cell, &back).and_then(|()| kept.keep(&memory));
     let is_identical = back == Ending::AtStart && machine.digest(&cell) == start;
     let back_s = cell.now_s() - there_s;
     if arguments.json {

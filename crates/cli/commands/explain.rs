@@ -7,6 +7,7 @@ use obverse_bytecode::ModuleCode;
 use obverse_codes::Page;
 use obverse_isa::{OPS, Opcode, reference};
 use obverse_preflight::Reason;
+use obverse_recovery::MemoryCode;
 use obverse_sim::CellCode;
 use obverse_syntax::codes::Code;
 use serde_json::{Value, json};
@@ -82,9 +83,9 @@ fn as_json(word: &str) -> Result {
     Ok(Outcome::Done)
 }
 
-/// The pages of the codes of programs, of workcells, and of assembly text and modules.
+/// The pages of the codes of programs, of workcells, of assembly text and modules, and of memories.
 fn pages() -> impl Iterator<Item = Page> {
-    Code::pages().chain(CellCode::pages()).chain(ModuleCode::pages())
+    Code::pages().chain(CellCode::pages()).chain(ModuleCode::pages()).chain(MemoryCode::pages())
 }
 
 /// What is known of a code, however it is written.

@@ -5,7 +5,7 @@ use crate::after::AfterArguments;
 use crate::load::{self, Program, Workcell};
 use crate::parameters::ParameterArguments;
 use crate::problem::Problem;
-use crate::recovering::{self, Terminal};
+use crate::recovering::{self, Kept, Terminal};
 use crate::report::{self, Report};
 use crate::story::Story;
 use crate::{Outcome, show, write};
@@ -67,11 +67,12 @@ pub(crate) fn run(arguments: &RunArguments) -> Result {
     let program = load::program_with(&arguments.file, &arguments.parameters.parameters)?;
     let (mut cell, file) = workcell(arguments, &program)?;
     let mut machine = load::machine(&program, &cell, &file)?;
-    let mut memory = recovering::memory(arguments.recovering.memory.as_deref())?;
+    let kept = Kept::read(arguments.recovering.memory.as_deref(), &program, &file.name)?;
+    let mut memory = kept.memory();
     head(arguments, &file.name);
     let (ending, incidents) = there(arguments, &mut machine, &mut cell, &mut memory);
-    let recorded = record(arguments, &program, &machine, &cell, &ending)
-        .and_then(|()| recovering::keep(&memory, arguments.recovering.memory.as_deref()));
+    let recorded =
+        record(arguments, &program, &machine, &cell, &ending).and_then(|()| kept.keep(&memory));
     let missed = missed(arguments, &ending, &cell);
     let told = Told { ending: &ending, incidents: &incidents, missed: &missed };
     finish(arguments, &machine, &cell, &told, recorded.as_ref().err());

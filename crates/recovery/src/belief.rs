@@ -15,6 +15,9 @@ const PRIOR_FAILED: f64 = 1.0;
 const PRIOR_FIRST: f64 = 1.0;
 /// What is believed of going back never helping, before anything is known.
 const PRIOR_NEVER: f64 = 0.1;
+/// How many of the errors that going back has helped in no incident yet are held to be such that it
+/// helps in none. By Laplace's rule so many in vain (n) leave of the others one in n + 1.
+const HELPED_BY_NOTHING: f64 = 0.2;
 /// Rounds of expectation maximisation: the shares settle to a percent in fewer.
 const ROUNDS: usize = 24;
 
@@ -92,7 +95,23 @@ impl Belief {
             }
             belief = Self { shares: normal(weights), helped, failed };
         }
+        if times.keys().all(|kind| !kind.is_enough) {
+            belief.doubt(times);
+        }
         belief
+    }
+
+    /// No incident was ever put right: each depth is the less likely to be enough, the more often
+    /// it was in vain to go so far, and what it loses is with going back not helping at all.
+    fn doubt(&mut self, times: &BTreeMap<Kind, u64>) {
+        for index in 0..DEPTH_MAX {
+            let went_so_far = |kind: &Kind| kind.depths.iter().any(|depth| *depth > index);
+            let in_vain = times.iter().filter(|(kind, _)| went_so_far(kind));
+            let in_vain: f64 = in_vain.map(|(_, times)| *times as f64).sum();
+            let left = self.shares[index] / (1.0 + HELPED_BY_NOTHING * in_vain);
+            self.shares[DEPTH_MAX] += self.shares[index] - left;
+            self.shares[index] = left;
+        }
     }
 
     /// How likely each depth is the least that is enough and an incident has come to this.

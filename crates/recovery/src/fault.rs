@@ -9,7 +9,8 @@ use obverse_workcell::{Fault, Workcell};
 /// The error that a program says a fault is.
 pub(crate) fn error_of(module: &Module, fault: &Fault) -> Option<ErrorId> {
     if let Fault::Watched { watch, .. } = fault {
-        return Some(ErrorId(watch.number));
+        let error = module.errors.get(usize::from(watch.number));
+        return error.filter(|error| !error.watches.is_empty()).map(|_| ErrorId(watch.number));
     }
     let name = FaultName::from_code(fault.kind().code())?;
     let index = module.errors.iter().position(|error| error.faults.contains(&name))?;

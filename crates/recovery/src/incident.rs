@@ -54,6 +54,9 @@ pub enum Outcome {
     Recovered,
     /// It was given up.
     GivenUp(GiveUp),
+    /// The run ended in something else before either: what would have come of the last attempt
+    /// nobody knows.
+    Lost,
 }
 
 /// An error at a place.
@@ -119,6 +122,20 @@ impl Incident {
         }
     }
 
+    /// What is learned of it: how far each attempt went back of which it is known what came of it,
+    /// and whether the last was enough. Nothing where the arm stayed, and nothing while it is open.
+    #[must_use]
+    pub fn lesson(&self) -> Option<(Vec<usize>, bool)> {
+        let (outcome, _) = self.outcome?;
+        let mut depths = self.depths();
+        // The error was due again after every attempt but the last, of which it depends.
+        if matches!(outcome, Outcome::Lost | Outcome::GivenUp(GiveUp::Blocked)) {
+            depths.pop();
+        }
+        let is_something = !depths.is_empty() && !depths.contains(&0);
+        is_something.then_some((depths, outcome == Outcome::Recovered))
+    }
+
     /// How long it was open, in seconds of the workcell's clock; none while it is.
     #[must_use]
     pub fn duration_s(&self) -> Option<f64> {
@@ -128,7 +145,40 @@ impl Incident {
 
 #[cfg(test)]
 mod tests {
-    use super::Search;
+    use super::{Attempt, Incident, Outcome, Search};
+    use crate::ending::GiveUp;
+    use obverse_isa::ErrorId;
+
+    fn lesson(depths: &[usize], outcome: Outcome) -> Option<(Vec<usize>, bool)> {
+        let search = Search { is_anew: false, point: 0 };
+        let attempt = |&actions: &usize| Attempt { actions, began_s: 0.0, search };
+        let incident = Incident {
+            error: ErrorId(0),
+            pc: 0,
+            place: String::new(),
+            number: 0,
+            entry: 0,
+            branches: Vec::new(),
+            is_in_cleanup: false,
+            began_s: 0.0,
+            began_way_m: 0.0,
+            attempts: depths.iter().map(attempt).collect(),
+            outcome: Some((outcome, 1.0)),
+        };
+        incident.lesson()
+    }
+
+    #[test]
+    fn of_an_attempt_that_something_else_ended_nothing_is_learned() {
+        assert_eq!(lesson(&[1, 2], Outcome::Recovered), Some((vec![1, 2], true)));
+        let given_up = Outcome::GivenUp(GiveUp::Attempts(2));
+        assert_eq!(lesson(&[1, 2], given_up), Some((vec![1, 2], false)));
+        for unknown in [Outcome::Lost, Outcome::GivenUp(GiveUp::Blocked)] {
+            assert_eq!(lesson(&[1, 2], unknown), Some((vec![1], false)), "{unknown:?}");
+            assert_eq!(lesson(&[4], unknown), None, "{unknown:?}");
+        }
+        assert_eq!(lesson(&[0, 0], Outcome::Recovered), None, "the arm stayed");
+    }
 
     #[test]
     fn a_search_goes_on_until_more_than_the_arm_is_taken_back_and_then_begins_in_the_middle() {

@@ -8,7 +8,8 @@
 //! [`trail`], what it may be taken back to; [`strategy`], the ways of recovering; [`incident`], an
 //! error at a place and what has been tried, with the words for a place, a fault that becomes an
 //! error and what the program asks for (`place`, `fault`, `asked`); [`depth`], how far to go back
-//! next; [`memory`], what was learned of that, and `belief`, what follows; [`foresight`], who would
+//! next; [`memory`], what was learned of that, with the codes of
+//! what is wrong with its text ([`mod@code`]), and `belief`, what follows; [`foresight`], who would
 //! know better; [`change`], what is done otherwise on the way forward again; [`tell`], what a
 //! person is told, and the tape (`noted`); [`mod@recover`], the loop, and `attempt`, one way
 //! back and
@@ -18,6 +19,7 @@ mod asked;
 mod attempt;
 mod belief;
 pub mod change;
+pub mod code;
 pub mod depth;
 pub mod drive;
 pub mod ending;
@@ -33,11 +35,12 @@ pub mod tell;
 pub mod trail;
 
 pub use asked::sequence;
+pub use code::MemoryCode;
 pub use drive::drive;
 pub use ending::{Ending, GiveUp};
 pub use foresight::Clairvoyant;
 pub use incident::{Attempt, Incident, Outcome, Search};
-pub use memory::{Memory, MemoryError};
+pub use memory::{Memory, MemoryError, Subject};
 pub use recover::{Foresight, Recovery, Site, recover};
 pub use strategy::{Bounds, Strategy};
 pub use tell::{Operator, Step, Teller, Unattended, Why};

@@ -8,6 +8,7 @@
 //! of what an action is, nor of files on a disk.
 
 use crate::belief::Belief;
+use crate::code::MemoryCode;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 use std::fmt;
@@ -25,7 +26,7 @@ const FEW: f64 = 5.0;
 /// believed that going back may not help.
 const IN_VAIN_MIN: u64 = 5;
 /// The version of the text.
-const VERSION: u32 = 1;
+const VERSION: u32 = 2;
 /// The most kinds of incident that a text may hold.
 const KINDS_MAX: usize = 100_000;
 
@@ -153,17 +154,44 @@ impl Memory {
             _ => 1.0,
         };
         let best = belief.best(costs, slack);
-        let is_worth_it = best.is_some_and(|(expected_s, _)| expected_s < costs.give_up_s);
         let furthest = costs.by_depth_s.len().min(DEPTH_MAX);
-        let goes_on = is_worth_it || self.in_vain(error, place, furthest) < IN_VAIN_MIN;
-        let best = best.filter(|_| goes_on);
+        let is_open = self.in_vain(error, place, furthest) < IN_VAIN_MIN;
+        // That nothing helps is found out by going as far as can be, and nowhere nearer.
+        let has_been_there = tried.iter().any(|depth| *depth >= furthest);
         let (expected_s, actions) = match best {
-            Some((expected_s, depth)) => (expected_s, Some(depth)),
-            None => (costs.give_up_s, None),
+            Some((expected_s, depth))
+                if expected_s < costs.give_up_s || is_open && has_been_there =>
+            {
+                (expected_s, Some(depth))
+            }
+            Some((expected_s, _)) if is_open => (expected_s, Some(furthest)),
+            _ => (costs.give_up_s, None),
         };
         let chance = actions.map_or(0.0, |depth| belief.chance(depth));
         Choice { actions, chance, expected_s, known }
     }
+}
+
+/// What recoveries a memory is of: errors and places are names, and those of one program say
+/// nothing of another.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Subject {
+    /// The name of the program's file.
+    pub program: String,
+    /// The name of the workcell's.
+    pub cell: String,
+}
+
+impl fmt::Display for Subject {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{} in {}", self.program, self.cell)
+    }
+}
+
+/// All that can be said of a text of another version.
+#[derive(Deserialize)]
+struct Versioned {
+    version: u32,
 }
 
 /// The text of a memory.
@@ -171,6 +199,8 @@ impl Memory {
 #[serde(deny_unknown_fields)]
 struct Text {
     version: u32,
+    program: String,
+    cell: String,
     #[serde(default)]
     place: Vec<PlaceText>,
 }
@@ -205,6 +235,13 @@ pub enum MemoryError {
         /// That which it says.
         found: u32,
     },
+    /// It is of another program, or of another workcell.
+    Foreign {
+        /// Of what it is.
+        found: Subject,
+        /// Of what it was to be.
+        wanted: Subject,
+    },
     /// It says what no run can have come to.
     Impossible {
         /// The error.
@@ -216,6 +253,19 @@ pub enum MemoryError {
     },
 }
 
+impl MemoryError {
+    /// Its code.
+    #[must_use]
+    pub fn code(&self) -> MemoryCode {
+        match self {
+            Self::Malformed { .. } => MemoryCode::Malformed,
+            Self::Version { .. } => MemoryCode::Version,
+            Self::Foreign { .. } => MemoryCode::Foreign,
+            Self::Impossible { .. } => MemoryCode::Impossible,
+        }
+    }
+}
+
 impl fmt::Display for MemoryError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
@@ -224,6 +274,11 @@ impl fmt::Display for MemoryError {
                 f,
                 "this memory is of version {found}, and this is for version {VERSION}; move it \
                  away to begin anew"
+            ),
+            Self::Foreign { found, wanted } => write!(
+                f,
+                "this memory is of {found}, and not of {wanted}, of which it says nothing; name \
+                 another file, or change `program` and `cell` in it if only names have changed"
             ),
             Self::Impossible { error, place, what } => {
                 write!(f, "what it says of error {error} at `{place}` cannot be: {what}")
@@ -241,9 +296,9 @@ const HEAD: &str = "\
 ";
 
 impl Memory {
-    /// It as text, to be kept.
+    /// It as text, to be kept, and of what it is.
     #[must_use]
-    pub fn to_text(&self) -> String {
+    pub fn to_text(&self, of: &Subject) -> String {
         let kind = |(kind, times): (&Kind, &u64)| KindText {
             depths: kind.depths.clone(),
             enough: kind.is_enough,
@@ -254,19 +309,29 @@ impl Memory {
             at: at.clone(),
             incident: known.times.iter().map(kind).collect(),
         };
-        let text = Text { version: VERSION, place: self.places.iter().map(place).collect() };
+        let text = Text {
+            version: VERSION,
+            program: of.program.clone(),
+            cell: of.cell.clone(),
+            place: self.places.iter().map(place).collect(),
+        };
         format!("{HEAD}{}", toml::to_string(&text).unwrap_or_default())
     }
 
-    /// The memory of a text.
+    /// The memory of a text that is of this.
     ///
     /// # Errors
     /// What is wrong with it.
-    pub fn from_text(text: &str) -> Result<Self, MemoryError> {
+    pub fn from_text(text: &str, of: &Subject) -> Result<Self, MemoryError> {
         let malformed = |why: &dyn fmt::Display| MemoryError::Malformed { why: why.to_string() };
+        let Versioned { version } = toml::from_str(text).map_err(|error| malformed(&error))?;
+        if version != VERSION {
+            return Err(MemoryError::Version { found: version });
+        }
         let text: Text = toml::from_str(text).map_err(|error| malformed(&error))?;
-        if text.version != VERSION {
-            return Err(MemoryError::Version { found: text.version });
+        let found = Subject { program: text.program, cell: text.cell };
+        if found != *of {
+            return Err(MemoryError::Foreign { found, wanted: of.clone() });
         }
         if text.place.iter().map(|place| place.incident.len()).sum::<usize>() > KINDS_MAX {
             return Err(malformed(&"it is too long"));
@@ -284,9 +349,33 @@ impl Memory {
                 let times = known.times.entry(key).or_default();
                 *times = times.saturating_add(kind.times);
             }
-            memory.places.insert((error, at), known);
+            let place = (error, at);
+            if memory.places.contains_key(&place) {
+                let ((error, place), what) = (place, "it is there twice");
+                return Err(MemoryError::Impossible { error, place, what });
+            }
+            memory.places.insert(place, known);
         }
         Ok(memory)
+    }
+
+    /// What it knows more than it did when it was as another one.
+    #[must_use]
+    pub fn since(&self, before: &Self) -> Self {
+        let mut more = Self::default();
+        for (place, known) in &self.places {
+            let old = before.places.get(place);
+            let old_times = |kind: &Kind| old.and_then(|old| old.times.get(kind)).copied();
+            let new = known.times.iter().filter_map(|(kind, times)| {
+                let more = times.saturating_sub(old_times(kind).unwrap_or(0));
+                (more > 0).then(|| (kind.clone(), more))
+            });
+            let times: BTreeMap<Kind, u64> = new.collect();
+            if !times.is_empty() {
+                more.places.insert(place.clone(), Known { times, belief: None });
+            }
+        }
+        more
     }
 
     /// Add what another one knows.
@@ -321,6 +410,10 @@ fn check(kind: &KindText) -> Result<(), &'static str> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    fn subject() -> Subject {
+        Subject { program: "p.obv".to_owned(), cell: "c.toml".to_owned() }
+    }
 
     const COSTS_S: [f64; 6] = [2.0, 4.0, 8.0, 12.0, 20.0, 30.0];
 
@@ -427,17 +520,48 @@ mod tests {
         memory.learn("jam", "sequence \"main\": advance insert", &[1, 2], true);
         memory.learn("jam", "sequence \"main\": advance insert", &[1, 2], false);
         memory.learn("empty", "elsewhere", &[40], true);
-        assert_eq!(Memory::from_text(&memory.to_text()), Ok(memory));
+        assert_eq!(Memory::from_text(&memory.to_text(&subject()), &subject()), Ok(memory));
+    }
+
+    #[test]
+    fn a_memory_of_another_program_or_cell_is_refused() {
+        let text = Memory::default().to_text(&subject());
+        for wanted in [
+            Subject { program: "q.obv".to_owned(), ..subject() },
+            Subject { cell: "d.toml".to_owned(), ..subject() },
+        ] {
+            let refused = Memory::from_text(&text, &wanted).unwrap_err();
+            assert_eq!(refused, MemoryError::Foreign { found: subject(), wanted });
+        }
+        let old = Memory::from_text("version = 1\n", &subject());
+        assert_eq!(old, Err(MemoryError::Version { found: 1 }), "which names no program");
+    }
+
+    #[test]
+    fn what_two_learned_beside_each_other_is_kept_of_both() {
+        let mut common = Memory::default();
+        common.learn("jam", "here", &[1], true);
+        let (mut one, mut other) = (common.clone(), common.clone());
+        one.learn("jam", "here", &[1], true);
+        one.learn("jam", "here", &[2], false);
+        other.learn("jam", "there", &[3], true);
+        let mut kept = one.clone();
+        kept.merge(&other.since(&common));
+        assert_eq!((kept.known("jam", "here"), kept.known("jam", "there")), (3, 1));
+        assert_eq!(one.since(&one), Memory::default());
     }
 
     #[test]
     fn what_no_run_can_have_learned_is_refused() {
         let text = |incident: &str| {
             format!(
-                "version = 1\n[[place]]\nerror = \"jam\"\nat = \"here\"\nincident = [{incident}]\n"
+                "version = 2\nprogram = \"p.obv\"\ncell = \"c.toml\"\n\
+                 [[place]]\nerror = \"jam\"\nat = \"here\"\nincident = [{incident}]\n"
             )
         };
-        let what = |incident: &str| Memory::from_text(&text(incident)).unwrap_err().to_string();
+        let what = |incident: &str| {
+            Memory::from_text(&text(incident), &subject()).unwrap_err().to_string()
+        };
         let of =
             |depths: &str| what(&format!("{{ depths = [{depths}], enough = true, times = 1 }}"));
         assert!(of("").contains("nothing was tried"));
@@ -445,9 +569,9 @@ mod tests {
         assert!(of("99").contains("further"));
         assert!(of("-1").contains("no memory"));
         assert!(of(&"1,".repeat(17)).contains("more attempts"));
-        let other = Memory::from_text("version = 7\n").unwrap_err();
+        let other = Memory::from_text("version = 7\n", &subject()).unwrap_err();
         assert_eq!(other, MemoryError::Version { found: 7 });
-        let torn = &Memory::from_text(&text("{ depths = [1],")[..60]);
+        let torn = &Memory::from_text(&text("{ depths = [1],")[..60], &subject());
         assert!(matches!(torn, Err(MemoryError::Malformed { .. })));
     }
 

@@ -515,9 +515,8 @@ impl<'p, C: Workcell> Run<'_, 'p, '_, C> {
                 return;
             }
             self.machine.alter(None);
-            let is_vain = is_over && self.is_stopping;
-            let outcome =
-                if is_vain { Outcome::GivenUp(GiveUp::Strategy) } else { Outcome::Recovered };
+            let is_lost = is_over && self.is_stopping;
+            let outcome = if is_lost { Outcome::Lost } else { Outcome::Recovered };
             if let Some(incident) = self.open.pop() {
                 self.close(incident, outcome);
             }
@@ -527,8 +526,7 @@ impl<'p, C: Workcell> Run<'_, 'p, '_, C> {
     fn close_all(&mut self, ending: &Ending) {
         let is_over = *ending == Ending::Finished;
         while let Some(incident) = self.open.pop() {
-            let outcome =
-                if is_over { Outcome::Recovered } else { Outcome::GivenUp(GiveUp::Strategy) };
+            let outcome = if is_over { Outcome::Recovered } else { Outcome::Lost };
             self.close(incident, outcome);
         }
     }
@@ -557,10 +555,9 @@ impl<'p, C: Workcell> Run<'_, 'p, '_, C> {
     }
 
     fn settle(&mut self, incident: Incident) {
-        let depths = incident.depths();
-        if self.recovery.remembers && !depths.contains(&0) {
+        let lesson = incident.lesson().filter(|_| self.recovery.remembers);
+        if let Some((depths, was_enough)) = lesson {
             let error = &self.declared(&incident).name;
-            let was_enough = matches!(incident.outcome, Some((Outcome::Recovered, _)));
             self.recovery.memory.learn(error, &incident.place, &depths, was_enough);
         }
         self.recovery.incidents.push(incident);

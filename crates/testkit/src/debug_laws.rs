@@ -112,7 +112,8 @@ fn driven<'p>(
 pub fn shows_what_was(u: &mut Unstructured<'_>) -> Result<bool> {
     let (deeds, by_steps) = (deeds(u)?, u.ratio(1, 2)?);
     let fraction = f64::from(u.int_in_range(0_u8..=10)?) / 10.0;
-    let cell = Ledger::new(u.arbitrary()?).stopping_at(u.int_in_range(0..=60)?, fraction);
+    let mut cell = Ledger::new(u.arbitrary()?).stopping_at(u.int_in_range(0..=60)?, fraction);
+    cell.comes_at = Some((u.int_in_range(0..=20)?, 0.5));
     let program = program(u)?;
     let Some((run, digests)) = driven(&program, cell, &deeds, by_steps) else { return Ok(false) };
     let acts = run.cell().map(|cell| cell.acts);

@@ -25,8 +25,13 @@ pub struct Ledger {
     pub acts: u64,
     /// The act that is stopped, and how far into it, 0 to 1.
     pub stop_at: Option<(u64, f64)>,
+    /// The act in which the first condition that is watched comes to hold, and how far into it.
+    pub comes_at: Option<(u64, f64)>,
     /// Whether a stop holds the arm.
     pub is_stopped: bool,
+    watches: Vec<Watch>,
+    /// What has come to hold in the act at hand, and how far into it.
+    came: Option<(Watch, f64)>,
     way_m: f64,
     last: MotionReport,
 }
@@ -42,7 +47,10 @@ impl Ledger {
             seed,
             acts: 0,
             stop_at: None,
+            comes_at: None,
             is_stopped: false,
+            watches: Vec::new(),
+            came: None,
             way_m: 0.0,
             last: MotionReport {
                 end: MotionEnd::Reached,
@@ -67,12 +75,28 @@ impl Ledger {
         }
         let act = self.acts;
         self.acts += 1;
-        Ok(self.stop_at.filter(|(at, _)| *at == act).map(|(_, fraction)| fraction))
+        let at_hand = |planned: Option<(u64, f64)>| {
+            planned.filter(|(at, _)| *at == act).map(|(_, fraction)| fraction)
+        };
+        let stopped = at_hand(self.stop_at);
+        let watch = self.watches.first().copied().filter(|_| stopped.is_none());
+        self.came = watch.zip(at_hand(self.comes_at));
+        let cut = self.came.filter(|(watch, _)| watch.stops);
+        Ok(stopped.or(cut.map(|(_, fraction)| fraction)))
     }
 
     fn stop(&mut self, fraction: f64) -> Fault {
+        if let Some((watch, fraction)) = self.came.take() {
+            return Fault::Watched { watch, fraction };
+        }
         self.is_stopped = true;
         Fault::ProtectiveStop { fraction }
+    }
+
+    /// The act is done: what has come to hold in it and has not stopped it.
+    fn tell(&mut self) -> Result<(), Fault> {
+        let came = self.came.take();
+        came.map_or(Ok(()), |(watch, fraction)| Err(Fault::Watched { watch, fraction }))
     }
 
     fn hash(&self, salt: u64) -> u64 {
@@ -142,6 +166,7 @@ impl Arm for Ledger {
             peak_force_n: 0.0,
             duration_s: 1.0,
         };
+        self.tell()?;
         Ok(self.last)
     }
 
@@ -182,7 +207,7 @@ impl DigitalIo for Ledger {
         *line.ok_or_else(|| Fault::Missing { what: format!("output {bit}") })? = level;
         match stopped {
             Some(fraction) => Err(self.stop(fraction)),
-            None => Ok(()),
+            None => self.tell(),
         }
     }
 
@@ -221,13 +246,14 @@ impl Clock for Ledger {
             return Err(self.stop(fraction));
         }
         self.now_s += duration_s;
-        Ok(())
+        self.tell()
     }
 }
 
 impl Watching for Ledger {
-    /// Nothing ever comes to hold.
-    fn watch(&mut self, _: &[Watch]) {}
+    fn watch(&mut self, watches: &[Watch]) {
+        self.watches = watches.to_vec();
+    }
 }
 
 impl Dice for Ledger {

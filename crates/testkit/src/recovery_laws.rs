@@ -5,7 +5,7 @@
 use crate::logged::Logged;
 use crate::programs::{self, Options};
 use arbitrary::{Result, Unstructured};
-use obverse_bytecode::{FaultName, Module, Verified, verify};
+use obverse_bytecode::{FaultName, Module, Respond, Verified, Watched, verify};
 use obverse_compiler::compile;
 use obverse_recovery::{
     Bounds, Ending, Memory, Operator, Recovery, Strategy, Trail, drive, recover,
@@ -164,7 +164,8 @@ fn actions(trail: &Trail<'_>) -> Vec<(u64, u64, u32)> {
     trail.actions().iter().map(|action| (action.steps, action.number, action.entry)).collect()
 }
 
-/// Under any strategy and with a fault anywhere, also on the way back, a run ends; no error is
+/// Under any strategy, with a fault anywhere, also on the way back, and with what is watched coming
+/// to hold in some act, a run ends; no error is
 /// tried more often than may be; nothing moves after a stop unless it was released; and from where
 /// it ended the program's state goes back to the start, or to what cannot be taken back.
 ///
@@ -174,14 +175,18 @@ pub fn recovers_within_bounds(u: &mut Unstructured<'_>) -> Result<bool> {
     let source = programs::generate(u, Options { allow_overrides: false, ..Options::default() })?;
     let source = all_reversing(&source);
     let names_faults: bool = u.arbitrary()?;
+    let is_at_once: bool = u.arbitrary()?;
     let program = program(&source, |module| {
         if let (true, Some(error)) = (names_faults, module.errors.first_mut()) {
             error.faults = vec![FaultName::ProtectiveStop];
+            error.watches = vec![Watched::Force { above_n: 50.0 }];
+            error.respond = [Respond::AtOnce, Respond::AfterAction][usize::from(!is_at_once)];
         }
     });
     let mut cell = Logged::new(u.arbitrary()?);
     let fraction = f64::from(u.int_in_range(0_u8..=10)?) / 10.0;
     cell.ledger.stop_at = Some((u.int_in_range(0..=40)?, fraction));
+    cell.ledger.comes_at = Some((u.int_in_range(0..=40)?, fraction));
     let strategy = *u.choose(&STRATEGIES)?;
     let mut operator = Releases(u.int_in_range(0..=2)?);
     let Ok(mut machine) = Machine::new(&program, &cell) else { return Ok(false) };

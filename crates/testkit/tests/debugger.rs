@@ -12,6 +12,7 @@ use obverse_isa::GlobalId;
 use obverse_testkit::Ledger;
 use obverse_vm::Direction::{Forward, Reverse};
 use obverse_vm::Stop;
+use obverse_workcell::Fault;
 
 const PROGRAM: &str = "\
 error odd { severity warning }
@@ -88,6 +89,32 @@ fn what_is_tried_is_another_run_and_leaving_it_shows_what_was_shown() {
     session.go_to_end();
     assert_eq!((session.digest(), session.recording().end), end);
     assert_eq!(session.leave_what_if(), Err(Declined::NoWhatIf));
+}
+
+#[test]
+fn an_act_that_was_cut_by_what_is_watched_is_shown_so_and_can_be_gone_on_from() {
+    let source = "error opened { on input 0 high  respond at once  then stop }
+                  sequence main { move 10 mm up  move 20 mm up  set 2 high }";
+    let Some(module) = compile("p.obv", source).module else { panic!("it compiles") };
+    let program = verify(module).expect("it verifies");
+    let mut cell = Ledger::new(1);
+    cell.comes_at = Some((1, 0.5));
+    let mut session = Session::over(Run::new(&program, cell).expect("it links").simulated(None));
+    let halt = session.go(Forward, Walk::Continue);
+    assert!(
+        matches!(halt, Halt::Stopped(Stop::Fault { fault: Fault::Watched { .. }, .. })),
+        "{halt:?}"
+    );
+    let cut = (session.digest(), session.recording().end);
+    // Gone forward from there, the act is done to its end.
+    assert_eq!(session.go(Forward, Walk::Continue), Halt::Stopped(Stop::Finished));
+    let end = session.digest();
+    session.go_to(cut.1).expect("a moment");
+    assert_eq!(session.digest(), cut.0);
+    session.what_if().expect("the workcell does again what it did");
+    assert_eq!(session.digest(), cut.0);
+    assert_eq!(session.go(Forward, Walk::Continue), Halt::Stopped(Stop::Finished));
+    assert_eq!(session.digest(), end);
 }
 
 #[test]

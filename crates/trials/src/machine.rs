@@ -57,19 +57,11 @@ impl Case for MachineCase<'_> {
 
     fn learn(&self, memory: &mut Memory, outcome: &Outcome) {
         for incident in &outcome.incidents {
-            if let Some((depths, is_enough)) = lesson(incident) {
-                memory.learn(&incident.error, &incident.place, &depths, is_enough);
+            if let Some((depths, was_enough)) = &incident.lesson {
+                memory.learn(&incident.error, &incident.place, depths, *was_enough);
             }
         }
     }
-}
-
-/// What an incident teaches of how far is enough, if anything: in place nothing was gone back by,
-/// and what the program itself put right afterwards no depth was enough for.
-fn lesson(incident: &Incident) -> Option<(Vec<usize>, bool)> {
-    let depths: Vec<usize> = incident.depths.iter().map(|depth| *depth as usize).collect();
-    let is_enough = incident.recovered && !incident.otherwise;
-    (!depths.contains(&0)).then_some((depths, is_enough))
 }
 
 /// Where one thread runs machines.
@@ -215,7 +207,7 @@ fn incident(
         place: found.place.clone(),
         depths: found.attempts.iter().map(|attempt| attempt.actions as u32).collect(),
         recovered: is_recovered || put_right,
-        otherwise: !is_recovered && put_right,
+        lesson: found.lesson(),
         cause,
     }
 }

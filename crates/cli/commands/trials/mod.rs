@@ -7,9 +7,9 @@ use super::Result;
 use crate::load::{self, Program};
 use crate::parameters::ParameterArguments;
 use crate::problem::Problem;
-use crate::{Outcome, files, lacking, show, write};
+use crate::{Outcome, files, lacking, recovering, show, write};
 use journal::Journal;
-use obverse_recovery::Memory;
+use obverse_recovery::{Memory, Subject};
 use obverse_sim::Cell;
 use obverse_trials::machine::Terms;
 use obverse_trials::{MachineCase, Part, Plan, Shard, Strategy, Summary};
@@ -126,8 +126,9 @@ fn campaign(arguments: &Arguments, path: &Path) -> std::result::Result<Part, Pro
     let mut plan = plan(arguments, &program, (&cell, file.text.as_deref()), strategies)?;
     let memory = match plan.strategies.contains(&Strategy::Learned) {
         true => {
-            let memory = learned(arguments, &case, jobs)?;
-            plan.memory_digest = Some(digest(memory.to_text().as_bytes()));
+            let of = recovering::subject(&program, &file.name);
+            let memory = learned(arguments, &case, &of, jobs)?;
+            plan.memory_digest = Some(digest(memory.to_text(&of).as_bytes()));
             memory
         }
         false => Memory::default(),
@@ -225,13 +226,11 @@ fn digest(bytes: &[u8]) -> String {
 fn learned(
     arguments: &Arguments,
     case: &MachineCase<'_>,
+    of: &Subject,
     jobs: usize,
 ) -> std::result::Result<Memory, Problem> {
     if let Some(path) = arguments.memory.as_deref().filter(|path| path.exists()) {
-        let bytes = load::bytes(path)?;
-        let text = String::from_utf8(bytes)
-            .map_err(|error| Problem::of_file(path, format!("not text: {error}")))?;
-        return Memory::from_text(&text).map_err(|error| Problem::of_file(path, error));
+        return recovering::remembered(path, of);
     }
     let mut progress = Progress::new("learning", 0, arguments.learn);
     let mut more = |_| progress.one_more();
@@ -239,7 +238,7 @@ fn learned(
     let memory =
         obverse_trials::learn(case, blank, arguments.seed, arguments.learn, jobs, &mut more);
     if let Some(path) = &arguments.memory {
-        write::file(path, memory.to_text().as_bytes())?;
+        write::file(path, memory.to_text(of).as_bytes())?;
     }
     Ok(memory)
 }
