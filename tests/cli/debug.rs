@@ -297,3 +297,30 @@ fn the_tape_of_a_run_that_is_killed_is_opened_where_it_was() {
     );
     assert_eq!(told.code, 0, "{}\n{}", told.stdout, told.stderr);
 }
+
+/// Ctrl-C halts what is under way, and the session goes on.
+#[cfg(unix)]
+#[test]
+fn an_interrupt_halts_the_command_and_keeps_the_session() {
+    use std::io::{BufRead, BufReader};
+    let bench = bench("interrupt");
+    let program = "var count = 0\nsequence main {\n  repeat 1000000000 times { count += 1 }\n  \
+                   if count > 3 { wait 1 s }\n}\n";
+    bench.write("i.obv", program);
+    let mut command = bench.command(&["debug", "i.obv", "--limit", "100000000000"]);
+    let mut child = command.stdin(Stdio::piped()).stdout(Stdio::piped()).spawn().expect("it runs");
+    let mut stdin = child.stdin.take().expect("a pipe");
+    stdin.write_all(b"continue\nprint count > 1000\n").expect("it reads");
+    let mut lines = BufReader::new(child.stdout.take().expect("a pipe")).lines();
+    let is_begun = lines.by_ref().any(|line| line.is_ok_and(|line| line.ends_with("continue")));
+    assert!(is_begun, "it begins");
+    std::thread::sleep(std::time::Duration::from_millis(200));
+    let id = child.id().to_string();
+    let sent = std::process::Command::new("kill").args(["-INT", &id]).status();
+    assert!(sent.expect("kill is there").success());
+    drop(stdin);
+    let rest: Vec<String> = lines.map_while(Result::ok).collect();
+    assert_eq!(rest.first().map(String::as_str), Some("interrupted"), "{rest:?}");
+    assert!(rest.iter().any(|line| line.ends_with("= true")), "{rest:?}");
+    assert_eq!(child.wait().expect("its end").code(), Some(0));
+}

@@ -4,13 +4,15 @@ use super::Result;
 use crate::debug::{Face, Front, Lines};
 use crate::load;
 use crate::parameters::ParameterArguments;
-use crate::problem::Problem;
+use crate::problem::{Problem, plain};
 use crate::report::Report;
 use crate::story::Story;
 use crate::{Outcome, lacking, taping, write};
 use obverse_debugger::{Run, Session};
 use obverse_sim::Sim;
 use serde_json::json;
+use signal_hook::consts::SIGINT;
+use signal_hook::flag::{register, register_conditional_default};
 use std::path::{Path, PathBuf};
 
 /// What a person may forget to stop: the most instructions that one command runs.
@@ -98,10 +100,21 @@ fn post_mortem(arguments: &Arguments, tape: &Path, file: Option<&Path>) -> Resul
     converse(arguments, run.simulated(start), lines)
 }
 
+/// The first Ctrl-C halts the command under way, between instructions; where it has found nothing
+/// to halt, the next one ends the process as it always does.
+fn interrupt(session: &Session<'_, Sim>) -> std::result::Result<(), Problem> {
+    let is_asked = session.interrupter();
+    register_conditional_default(SIGINT, is_asked.clone())
+        .and_then(|_| register(SIGINT, is_asked))
+        .map(|_| ())
+        .map_err(|error| Problem::new(format!("Ctrl-C cannot be heard: {}", plain(&error))))
+}
+
 fn converse(arguments: &Arguments, run: Run<'_, Sim>, mut lines: Lines) -> Result {
     let mut session = Session::over(run);
     let module = session.module();
     session.limit(arguments.limit);
+    interrupt(&session)?;
     session.tell_to(match arguments.json {
         true => Box::new(Report::new(module)),
         false => Box::new(Story::new(module)),
