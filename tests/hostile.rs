@@ -4,11 +4,14 @@
 //! `HOSTILE_SEED` runs that one alone.
 
 use arbitrary::Unstructured;
-use obverse_bytecode::{disassemble, encode, verify};
-use obverse_tape::{Note, Noted, TapeFile};
+use obverse_bytecode::codec::HEADER_BYTES;
+use obverse_bytecode::{Verified, disassemble, encode, verify};
+use obverse_debugger::{Taped, Writer, taped};
+use obverse_recovery::Driven;
+use obverse_tape::{Note, Noted};
 use obverse_testkit::code::{self, Options};
 use obverse_testkit::{Ledger, altered, hostile, programs};
-use obverse_vm::{Direction, Limits, Machine};
+use obverse_vm::{Direction, Machine};
 use std::path::Path;
 
 /// How many inputs each door sees.
@@ -124,7 +127,7 @@ fn modules_with_altered_bytes() {
     withstands(hostile::module_bytes, 1, |random| {
         let bytes = encode(&module(random)).expect("its bytes");
         // Without the header: it is sealed again, so that the alteration reaches what it says.
-        random.altered(&bytes[obverse_bytecode::codec::HEADER_BYTES..])
+        random.altered(&bytes[HEADER_BYTES..])
     });
 }
 
@@ -134,42 +137,42 @@ fn modules_with_altered_parts() {
 }
 
 #[test]
-fn recordings_with_altered_bytes() {
+fn tapes_with_altered_bytes() {
     withstands(hostile::tape_bytes, 5, |random| {
         let program = verify(module(random)).expect("it verifies");
-        let mut cell = Ledger::new(1);
-        let mut machine = Machine::new(&program, &cell).expect("it links");
-        let mut run = |machine: &mut Machine<'_>| {
-            machine.run(Direction::Forward, Limits::instructions(100), &mut cell, &mut ());
-            machine.snapshot(&cell)
-        };
-        let (left, state) = (run(&mut machine), run(&mut machine));
-        machine.note(Note {
-            steps: 1,
-            time_s: 0.5,
-            error: 0,
-            pc: 1,
-            attempts: 1,
-            what: Noted::Back { actions: 2, to: 1 },
-        });
-        let mut streams = machine.streams();
-        // As if all had been left for a cleanup then.
-        streams.left = (random.below(2) == 0).then(|| Box::new(left));
-        let module = encode(program.module()).expect("its bytes");
-        let file = TapeFile {
-            fingerprint: obverse_bytecode::fingerprint(&module),
-            // At the end, where the alterations are then few.
-            module,
-            seed: 1,
-            ending: String::new(),
-            state,
-            streams,
-        };
-        let bytes = file.to_bytes().expect("its bytes");
-        let payload = &bytes[obverse_bytecode::codec::HEADER_BYTES..];
-        let (module, state) = payload.split_at(file.module.len() + 8);
-        [module, &random.altered(state)].concat()
+        let bytes = taped(&program, random.next());
+        // Its parts without their headers: they are sealed again.
+        let mut parts: Vec<&[u8]> = Vec::new();
+        let mut rest = &bytes[..];
+        while let Some((header, after)) = rest.split_at_checked(HEADER_BYTES) {
+            let length = u64::from_le_bytes(header[20..28].try_into().expect("eight bytes"));
+            let (part, after) = after.split_at(length as usize);
+            parts.push(part);
+            rest = after;
+        }
+        let chosen = random.below(parts.len());
+        let altered = random.altered(parts[chosen]);
+        parts[chosen] = &altered;
+        let behind_its_length = |part: &&[u8]| [&(part.len() as u16).to_le_bytes(), *part].concat();
+        parts.iter().flat_map(behind_its_length).collect()
     });
+}
+
+/// The tape file of a run, a little there and back.
+fn taped(program: &Verified, seed: u64) -> Vec<u8> {
+    let mut cell = Ledger::new(seed);
+    let mut machine = Machine::new(program, &cell).expect("it links");
+    let names = ("m.obv".to_owned(), None);
+    let head = taped::head(program.module(), &cell, names, seed).expect("it is no larger");
+    let mut file = Vec::new();
+    let mut taped = Taped::new(&mut machine, &mut cell, Writer::begin(&mut file, head));
+    for (direction, most) in [(Direction::Forward, 200), (Direction::Reverse, 50)] {
+        taped.run(direction, most, &mut ());
+    }
+    let what = Noted::Back { actions: 2, to: 1 };
+    taped.note(Note { steps: 1, time_s: 0.5, error: 0, pc: 1, attempts: 1, what });
+    taped.end("stopped").expect("memory can be written");
+    file
 }
 
 #[test]

@@ -81,7 +81,11 @@ fn module_with(
     let raw = bytes(path)?;
     let extension = path.extension().and_then(|extension| extension.to_str()).unwrap_or("");
     if extension == "tape" {
-        let why = format!("this is a tape; `obverse tape {}` shows it", path.display());
+        let shown = path.display();
+        let why = format!(
+            "this is a tape; `obverse tape {shown}` shows it, and `obverse debug --tape \
+             {shown}` walks through its run"
+        );
         return Err(Problem::of_file(path, why));
     }
     if raw.starts_with(&MODULE.magic) || extension == "obc" {

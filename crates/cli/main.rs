@@ -19,6 +19,7 @@ mod recovering;
 mod report;
 mod show;
 mod story;
+mod taping;
 mod write;
 
 use clap::{Parser, Subcommand};

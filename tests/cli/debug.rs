@@ -36,8 +36,11 @@ fn bench(name: &str) -> Bench {
 
 /// Feed commands through a pipe.
 fn piped(bench: &Bench, more: &[&str], commands: &[&str]) -> Ran {
-    let arguments = [&["debug", "p.obv"], more].concat();
-    let mut command = bench.command(&arguments);
+    piped_to(bench, &[&["debug", "p.obv"], more].concat(), commands)
+}
+
+fn piped_to(bench: &Bench, arguments: &[&str], commands: &[&str]) -> Ran {
+    let mut command = bench.command(arguments);
     command.stdin(Stdio::piped()).stdout(Stdio::piped()).stderr(Stdio::piped());
     let mut child = command.spawn().expect("the binary runs");
     let text = commands.iter().flat_map(|line| [line, "\n"]).collect::<String>();
@@ -241,4 +244,83 @@ fn who_follows_a_run_changes_nothing_of_what_is_recorded() {
     let first = ran.json().iter().filter(|line| commanded(line)).count();
     let alone = bench.ends(0, &["run", "feeder.obv", "--json"]).json();
     assert_eq!(first, alone.iter().filter(|line| commanded(line)).count(), "once and not twice");
+}
+
+/// The tape of a run leads to its end; back from there, and to what would have been.
+#[test]
+fn a_tape_is_opened_at_its_end() {
+    let bench = bench("tape");
+    let ran = bench.ends(0, &["run", "--json", "p.obv", "--tape", "t.tape"]).summary();
+    let commands = ["print count", "goto start", "what-if", "continue"];
+    let told = piped_to(&bench, &["debug", "--json", "--tape", "t.tape"], &commands);
+    assert_eq!(told.code, 0, "{}\n{}", told.stdout, told.stderr);
+    let lines = told.json();
+    assert_eq!((&lines[0]["type"], &lines[0]["program"]), (&json!("tape"), &json!("p.obv")));
+    assert_eq!((&lines[0]["ending"], &lines[0]["can_try"]), (&ran["message"], &json!(true)));
+    let answers: Vec<&Value> = lines.iter().filter(|line| line["type"] == "answer").collect();
+    assert_eq!(answers[0]["position"]["moment"], ran["instructions"]);
+    assert_eq!(answers[0]["position"]["mode"], "rewound");
+    assert_eq!(answers[3]["position"]["moment"], ran["instructions"], "the same again");
+    bench.write("other.obv", "sequence main { wait 1 s }");
+    let refused = ["debug", "other.obv", "--tape", "t.tape"];
+    bench.refuses(&refused, &["t.tape: this is a run of p.obv (", "and not of other.obv"]);
+    bench.ends(0, &["debug", "p.obv", "--tape", "t.tape"]);
+    bench.refuses(&["debug", "--tape", "t.tape", "--seed", "3"], &["cannot be used with"]);
+    bench.refuses(&["debug"], &["--tape"]);
+}
+
+/// Killed in the middle, a run leaves what it has come to, while the next one has not begun.
+#[cfg(unix)]
+#[test]
+fn the_tape_of_a_run_that_is_killed_is_opened_where_it_was() {
+    let bench = bench("killed");
+    let program = "cell \"bench_cell.toml\"\nvar count = 0\nsequence main {\n  \
+                   repeat 1000000000 times { count += 1 set 2 high set 2 low }\n}\n";
+    bench.write("k.obv", program);
+    let run = ["run", "k.obv", "--json", "--tape", "k.tape"];
+    let mut child = bench.command(&run).stdout(Stdio::null()).spawn().expect("it runs");
+    let long = || std::fs::metadata(bench.path("k.tape")).map_or(0, |file| file.len()) > 200_000;
+    let begun = std::time::Instant::now();
+    while !long() {
+        assert!(begun.elapsed().as_secs() < 60, "nothing is written");
+        std::thread::sleep(std::time::Duration::from_millis(5));
+    }
+    child.kill().expect("it is there");
+    child.wait().expect("it is gone");
+    let shown = bench.ends(0, &["debug", "--json", "--tape", "k.tape"]);
+    assert_eq!(shown.json()[0]["ending"], json!(null));
+    assert!(shown.summary()["position"]["moment"].as_u64() > Some(1000), "{}", shown.stdout);
+    let told = piped_to(
+        &bench,
+        &["debug", "--json", "--tape", "k.tape"],
+        &["print count", "last output 2", "reverse-step", "print count"],
+    );
+    assert_eq!(told.code, 0, "{}\n{}", told.stdout, told.stderr);
+}
+
+/// Ctrl-C halts what is under way, and the session goes on.
+#[cfg(unix)]
+#[test]
+fn an_interrupt_halts_the_command_and_keeps_the_session() {
+    use std::io::{BufRead, BufReader};
+    let bench = bench("interrupt");
+    let program = "var count = 0\nsequence main {\n  repeat 1000000000 times { count += 1 }\n  \
+                   if count > 3 { wait 1 s }\n}\n";
+    bench.write("i.obv", program);
+    let mut command = bench.command(&["debug", "i.obv", "--limit", "100000000000"]);
+    let mut child = command.stdin(Stdio::piped()).stdout(Stdio::piped()).spawn().expect("it runs");
+    let mut stdin = child.stdin.take().expect("a pipe");
+    stdin.write_all(b"continue\nprint count > 1000\n").expect("it reads");
+    let mut lines = BufReader::new(child.stdout.take().expect("a pipe")).lines();
+    let is_begun = lines.by_ref().any(|line| line.is_ok_and(|line| line.ends_with("continue")));
+    assert!(is_begun, "it begins");
+    std::thread::sleep(std::time::Duration::from_millis(200));
+    let id = child.id().to_string();
+    let sent = std::process::Command::new("kill").args(["-INT", &id]).status();
+    assert!(sent.expect("kill is there").success());
+    drop(stdin);
+    let rest: Vec<String> = lines.map_while(Result::ok).collect();
+    assert_eq!(rest.first().map(String::as_str), Some("interrupted"), "{rest:?}");
+    assert!(rest.iter().any(|line| line.ends_with("= true")), "{rest:?}");
+    assert_eq!(child.wait().expect("its end").code(), Some(0));
 }

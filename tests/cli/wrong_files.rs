@@ -1,6 +1,10 @@
 //! Modules and tapes that are damaged or foreign, and outputs that cannot or must not be written.
 
 use crate::support::Bench;
+use obverse_debugger::file::Piece;
+use obverse_debugger::recording::{Facts, Log, Order, Stretch};
+use obverse_debugger::{Head, Moment, Recording, TapeFile, Writer};
+use obverse_isa::ErrorId;
 use serde_json::json;
 use std::process::Stdio;
 
@@ -24,13 +28,16 @@ fn a_truncated_file_is_refused_wherever_it_ends() {
     for (file, command) in [("m.obc", "run"), ("t.tape", "tape")] {
         let whole = bench.read(file);
         let name = format!("cut_{file}");
-        for length in [0, 1, 7, 8, 20, 35, 36, 37, whole.len() / 2, whole.len() - 1] {
+        if file == "m.obc" {
+            bench.write(&name, [&whole[..], &[0]].concat());
+            bench.refuses(&[command, &name], &[&format!("{name}: byte 20"), "added to"]);
+        }
+        // Of a tape, behind its head, what is there is shown.
+        let late = if file == "m.obc" { whole.len() - 1 } else { 100 };
+        for length in [0, 1, 7, 8, 20, 35, 36, 37, late / 2, late] {
             bench.write(&name, &whole[..length]);
             bench.refuses(&[command, &name], &[&format!("{name}: byte ")]);
         }
-        let longer: Vec<u8> = whole.iter().copied().chain([0]).collect();
-        bench.write(&name, longer);
-        bench.refuses(&[command, &name], &[&format!("{name}: byte 20"), "added to"]);
     }
 }
 
@@ -75,45 +82,43 @@ fn a_file_of_another_kind_is_no_tape_and_no_program() {
     }
 }
 
-/// A tape whose header is right, with the module of one program and the state of another.
+/// A tape of one program with the module of another.
 #[test]
 fn a_foreign_tape_is_refused() {
-    use obverse_bytecode::{encode, fingerprint};
-    use obverse_tape::TapeFile;
+    use obverse_bytecode::encode;
     let bench = bench("foreign");
-    let (mut file, _) = TapeFile::from_bytes(&bench.read("t.tape")).expect("a tape");
     let other = obverse_compiler::compile("other.obv", "sequence main { wait 1 s }");
     let module = encode(&other.module.expect("a module")).expect("bytes");
-    file.module.clone_from(&module);
-    bench.write("f.tape", file.to_bytes().expect("bytes"));
-    bench.refuses(&["tape", "f.tape"], &["f.tape", "its module is not the one that was run"]);
-    file.fingerprint = fingerprint(&module);
-    bench.write("f.tape", file.to_bytes().expect("bytes"));
-    bench.refuses(&["tape", "f.tape"], &["f.tape: its records do not fit the program"]);
-}
-
-/// A tape of the right program from which records are missing.
-#[test]
-fn a_tape_without_its_records_is_refused() {
-    use obverse_tape::TapeFile;
-    let bench = bench("hollow");
-    let (mut file, _) = TapeFile::from_bytes(&bench.read("t.tape")).expect("a tape");
-    file.streams = Default::default();
-    bench.write("h.tape", file.to_bytes().expect("bytes"));
-    bench.refuses(&["tape", "h.tape"], &["h.tape: its records do not fit the program"]);
-}
-
-/// A tape that says that the run was shorter than its records: the walk ends all the same.
-#[test]
-fn a_tape_that_leads_past_its_start_is_refused() {
-    use obverse_tape::TapeFile;
-    let bench = bench("short");
-    let (mut file, _) = TapeFile::from_bytes(&bench.read("t.tape")).expect("a tape");
-    for steps in [0, 1, 5, file.state.steps - 1] {
-        file.state.steps = steps;
-        bench.write("s.tape", file.to_bytes().expect("bytes"));
-        bench.refuses(&["tape", "s.tape"], &["s.tape: its records do not fit the program: "]);
+    bench.write("f.tape", altered(&bench.read("t.tape"), |head, _| head.module = module.clone()));
+    for command in [&["tape", "f.tape"][..], &["debug", "--tape", "f.tape"]] {
+        bench.refuses(command, &["f.tape: what it records is not what its program does"]);
     }
+}
+
+/// A tape of the right program from which answers of the workcell are missing.
+#[test]
+fn a_tape_without_its_answers_is_refused() {
+    let bench = bench("hollow");
+    let hollow = altered(&bench.read("t.tape"), |_, pieces| {
+        pieces.iter_mut().for_each(|piece| piece.log = Log::default());
+    });
+    bench.write("h.tape", hollow);
+    bench.refuses(&["tape", "h.tape"], &["h.tape: what it records is not what its program does"]);
+}
+
+/// The same tape with its head and its pieces changed.
+fn altered(bytes: &[u8], change: impl FnOnce(&mut Head, &mut [Piece])) -> Vec<u8> {
+    let file = TapeFile::from_bytes(bytes).expect("a tape");
+    let (mut head, recording) = (file.head, file.recording);
+    let Recording { log, mut stretches, end, .. } = recording;
+    stretches.remove(0);
+    let mut pieces = [Piece { log, stretches, end }];
+    change(&mut head, &mut pieces);
+    let mut altered = Vec::new();
+    let mut writer = Writer::begin(&mut altered, head);
+    pieces.into_iter().for_each(|piece| writer.piece(piece));
+    writer.end("finished").expect("memory can be written");
+    altered
 }
 
 /// A module whose checksum is right and whose content is not: it is not run, and can be looked at.
@@ -147,55 +152,75 @@ fn a_module_that_does_not_verify_is_not_run() {
     }
 }
 
-/// A tape whose checksum is right and whose content is not: shown as far as it makes sense, or
+/// A tape whose checksums are right and whose content is not: shown as far as it makes sense, or
 /// refused, and the process ends well.
 #[test]
 fn a_tape_with_anything_in_it_is_shown_or_refused() {
-    use obverse_tape::{Snapshot, TapeFile};
-    type Change = fn(&mut Snapshot);
+    type Change = fn(&mut Head, &mut [Piece]);
     let bench = bench("hostile");
-    let (file, module) = TapeFile::from_bytes(&bench.read("t.tape")).expect("a tape");
+    let whole = bench.read("t.tape");
     let changes: &[Change] = &[
-        |state| state.steps = 0,
-        |state| state.steps = u64::MAX,
-        |state| state.operands = vec![7; 300],
-        |state| state.frames.clear(),
-        |state| state.frames = vec![state.frames[0].clone(); 2000],
-        |state| state.frames.push(state.frames[0].clone()),
-        |state| state.frames[0].return_pc = u32::MAX,
-        |state| state.frames[0].function = u16::MAX,
-        |state| state.frames[0].words = vec![u64::MAX; 1000],
-        |state| state.frames[0].positions = vec![[f64::NAN; 6]; 1000],
-        |state| state.globals = vec![u64::MAX; 1000],
-        |state| state.settings = [u64::MAX; 5],
-        |state| state.raised = vec![u16::MAX; 1000],
-        |state| state.pending = Some((false, None)),
-        |state| state.pending = Some((true, Some(true))),
-        |state| state.joints = [f64::NAN; 6],
-        |state| state.outputs = Vec::new(),
+        |head, _| head.module.clear(),
+        |head, _| head.program.clear(),
+        |head, _| head.facts = Facts::default(),
+        |head, _| head.facts.outputs = u16::MAX,
+        |head, _| head.start.outputs.clear(),
+        |head, _| head.start.joints.0 = [f64::NAN; 6],
+        |head, _| head.start.now_s = f64::NEG_INFINITY,
+        |_, pieces| pieces[0].end = Moment(0),
+        |_, pieces| pieces[0].end = Moment(u64::MAX),
+        |_, pieces| pieces[0].end = pieces[0].end.after(1000),
+        |_, pieces| pieces[0].log.frames.truncate(3),
+        |_, pieces| pieces[0].log.frames.reverse(),
+        |_, pieces| pieces[0].log.motions.clear(),
+        |_, pieces| pieces[0].log.motions.iter_mut().for_each(|it| it.joints.0 = [f64::NAN; 6]),
+        |_, pieces| pieces[0].log.frames.iter_mut().for_each(|it| it.fault = Some(9)),
+        |_, pieces| pieces[0].stretches.push(stretch(Order::Note(7), 0, 0)),
+        |_, pieces| pieces[0].stretches.push(stretch(Order::Reverse, 0, 0)),
+        |_, pieces| pieces[0].stretches.push(stretch(Order::Reverse, 1, u64::MAX)),
+        |_, pieces| pieces[0].stretches.push(stretch(Order::Raise(ErrorId(9)), 2, 0)),
     ];
-    let show = |state: Snapshot, what: &str| {
-        let changed = TapeFile { state, ..file.clone() };
-        bench.write("x.tape", changed.to_bytes().expect("bytes"));
-        let ran = bench.run(&["tape", "x.tape"]);
-        assert!(ran.code == 0 || ran.code == 2, "{what}: {}\n{}", ran.code, ran.stderr);
-        assert!(!ran.stderr.contains("panicked"), "{what}: {}", ran.stderr);
-        assert_eq!(
-            ran.code == 2,
-            ran.stderr.starts_with("error: x.tape: "),
-            "{what}: {}",
-            ran.stderr
-        );
-    };
     for (number, change) in changes.iter().enumerate() {
-        let mut state = file.state.clone();
-        change(&mut state);
-        show(state, &format!("change {number}"));
+        bench.write("x.tape", altered(&whole, change));
+        for command in [&["tape", "x.tape"][..], &["debug", "--tape", "x.tape"]] {
+            let ran = bench.run(command);
+            let why = format!("change {number}: {}\n{}", ran.code, ran.stderr);
+            assert!(ran.code == 0 || ran.code == 2, "{why}");
+            assert!(!ran.stderr.contains("panicked"), "{why}");
+            assert_eq!(ran.code == 2, ran.stderr.starts_with("error: x.tape: "), "{why}");
+        }
     }
-    let end = u32::try_from(module.code.len()).expect("a short program");
-    for pc in (0..=end).chain([u32::MAX]) {
-        show(Snapshot { pc, ..file.state.clone() }, &format!("at {pc}"));
+}
+
+fn stretch(order: Order, begin: u64, frame: u64) -> Stretch {
+    Stretch { order, begin: Moment(begin), frame }
+}
+
+/// Cut off behind its head anywhere, as by a run that is killed, a tape is shown up to there.
+#[test]
+fn a_tape_that_is_cut_off_is_shown_as_far_as_it_goes() {
+    let bench = bench("cut");
+    let whole = bench.read("t.tape");
+    let head = TapeFile::from_bytes(&whole).expect("a tape").head;
+    let mut begun = Vec::new();
+    drop(Writer::begin(&mut begun, head));
+    let rest = whole.len() - begun.len();
+    let mut moments = Vec::new();
+    for length in [begun.len(), begun.len() + 5, begun.len() + rest / 2, whole.len() - 1] {
+        bench.write("c.tape", &whole[..length]);
+        let shown = bench.ends(0, &["tape", "c.tape"]).stdout;
+        assert!(shown.contains("cut off before its end"), "{length}: {shown}");
+        let told = bench.ends(0, &["debug", "--json", "--tape", "c.tape"]);
+        let lines = told.json();
+        assert_eq!(lines[0]["type"], "tape");
+        assert_eq!(lines[0]["ending"], json!(null));
+        assert_eq!(lines[0]["torn_bytes"] == 0, length == begun.len(), "{length}");
+        moments.push(told.summary()["position"]["moment"].as_u64());
     }
+    assert_eq!(moments[..2], [Some(0); 2]);
+    assert!(moments[1] < moments[2] && moments[2] < moments[3], "{moments:?}");
+    bench.write("g.tape", [&whole[..], &whole[begun.len()..]].concat());
+    bench.refuses(&["tape", "g.tape"], &["goes on behind its end"]);
 }
 
 #[test]
@@ -284,23 +309,20 @@ fn an_output_that_is_no_regular_file_is_refused() {
     assert!(pipe.file_type().is_fifo());
 }
 
-/// The run was made: what came of it is told, although its tape is lost.
+/// A tape is written as the run goes: without it, there is none.
 #[test]
-fn a_tape_that_cannot_be_written_loses_no_figures() {
+fn nothing_runs_whose_tape_cannot_be_made() {
     let bench = Bench::new("lost_tape");
     // No folder takes such a name, which is only known when the file is made.
     let name = "t".repeat(300);
-    for (command, last) in [("run", " bits of tape, "), ("back", " instructions taken back, ")] {
+    for command in ["run", "back"] {
         let ran = bench.ends(2, &[command, "tower.obv", "--tape", &name]);
         assert!(ran.stderr.contains("cannot be written"), "{}", ran.stderr);
-        assert!(ran.stdout.lines().last().is_some_and(|line| line.contains(last)));
-        let ran = bench.ends(2, &[command, "--json", "tower.obv", "--tape", &name]);
-        let (lines, summary) = (ran.json(), ran.summary());
-        assert_eq!(lines.iter().filter(|line| line["type"] == "summary").count(), 1);
-        assert!(summary["tape_bits"].as_u64() > Some(0), "{summary}");
+        assert_eq!(ran.stdout, "");
+        let summary = bench.ends(2, &[command, "--json", "tower.obv", "--tape", &name]).summary();
+        assert_eq!(summary["outcome"], "refused");
         assert_eq!(summary["messages"][0]["file"], json!(name));
     }
-    assert!(bench.files().keys().all(|name| !name.contains(".part")));
     // As long as a name can be.
     bench.ends(0, &["run", "tower.obv", "--tape", &"t".repeat(250)]);
 }

@@ -10,7 +10,8 @@ fn requests_out_of_turn_are_refused() {
     client.ok("initialize", json!({ "adapterID": "obverse" }));
     client.refused("initialize", json!({}));
     assert!(client.refused("continue", json!({ "threadId": 1 })).contains("launch"));
-    assert!(client.refused("attach", json!({ "tape": "run.tape" })).contains("tape"));
+    assert!(client.refused("attach", json!({ "tape": "none.tape" })).contains("none.tape"));
+    assert!(client.refused("attach", json!({ "program": "glue.obv" })).contains("tape"));
     for wrong in [json!({}), json!({ "program": 3 }), json!({ "program": "none.obv" })] {
         client.refused("launch", wrong);
     }

@@ -20,9 +20,14 @@ pub(crate) struct Client {
 
 impl Client {
     pub(crate) fn new() -> Self {
+        Self::in_folder(Path::new(PROGRAMS))
+    }
+
+    /// With the adapter in a folder.
+    pub(crate) fn in_folder(folder: &Path) -> Self {
         let mut adapter = Command::new(env!("CARGO_BIN_EXE_obverse"))
             .arg("dap")
-            .current_dir(PROGRAMS)
+            .current_dir(folder)
             .stdin(Stdio::piped())
             .stdout(Stdio::piped())
             .stderr(Stdio::null())

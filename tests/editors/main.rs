@@ -52,7 +52,7 @@ fn the_extension_speaks_of_what_there_is() {
     };
     assert_eq!(debugger["type"], "obverse");
     assert_eq!(attributes("launch"), ["program", "seed", "stopOnEntry", "workcell"]);
-    assert_eq!(attributes("attach"), ["tape"]);
+    assert_eq!(attributes("attach"), ["program", "tape", "workcell"]);
 }
 
 /// Lock files name no place that packages come from: that is the business of who installs.

@@ -53,6 +53,8 @@ pub const HEADER_BYTES: usize = 36;
 pub struct DecodeError {
     /// The format.
     pub format: Format,
+    /// Where in the file the header stands, in bytes: several may follow each other in one.
+    pub at: usize,
     /// What is wrong.
     pub kind: DecodeErrorKind,
 }
@@ -103,39 +105,57 @@ pub enum DecodeErrorKind {
 impl fmt::Display for DecodeError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Format { name, version, remedy, .. } = self.format;
+        let at = |byte: usize| self.at + byte;
         match &self.kind {
             DecodeErrorKind::Short { bytes, needed } => write!(
                 f,
-                "byte {bytes}: the {name} ends here, and its header alone takes {needed} bytes"
+                "byte {}: the {name} ends here, and its header alone takes {needed} bytes",
+                at(*bytes)
             ),
             DecodeErrorKind::Magic => {
-                write!(f, "byte 0: this is no {name}: it does not begin as one does")
+                write!(f, "byte {}: this is no {name}: it does not begin as one does", at(0))
             }
             DecodeErrorKind::Version { found } => write!(
                 f,
-                "byte 8: the {name} has format version {found}, and this is version {version}; \
-                 {remedy}"
+                "byte {}: the {name} has format version {found}, and this is version {version}; \
+                 {remedy}",
+                at(8)
             ),
             DecodeErrorKind::Table { found } => write!(
                 f,
-                "byte 12: the {name} was made for instruction table {found:016x}, and this is \
-                 {FINGERPRINT:016x}; {remedy}"
+                "byte {}: the {name} was made for instruction table {found:016x}, and this is \
+                 {FINGERPRINT:016x}; {remedy}",
+                at(12)
             ),
             DecodeErrorKind::Length { stated, found } => write!(
                 f,
-                "byte 20: the header says that {stated} bytes follow, and {found} do; the file was \
-                 cut off or added to"
+                "byte {}: the header says that {stated} bytes follow, and {found} do; the file was \
+                 cut off or added to",
+                at(20)
             ),
             DecodeErrorKind::TooLarge { stated } => write!(
                 f,
-                "byte 20: the {name} asks for {stated} bytes, and none has more than {LIMIT_BYTES}"
+                "byte {}: the {name} asks for {stated} bytes, and none has more than {LIMIT_BYTES}",
+                at(20)
             ),
             DecodeErrorKind::Checksum => {
-                write!(f, "byte 28: the checksum does not fit the bytes; the file is damaged")
+                let at = at(28);
+                write!(f, "byte {at}: the checksum does not fit the bytes; the file is damaged")
             }
             DecodeErrorKind::Payload { why } => {
-                write!(f, "byte {HEADER_BYTES}: the payload is no {name}: {why}")
+                write!(f, "byte {}: the payload is no {name}: {why}", at(HEADER_BYTES))
             }
+        }
+    }
+}
+
+impl DecodeError {
+    /// Whether what is there, of so many bytes, may be the beginning of what was meant.
+    #[must_use]
+    pub fn is_cut_off(&self, bytes: usize) -> bool {
+        match self.kind {
+            DecodeErrorKind::Length { stated, found } => stated > found as u64,
+            _ => bytes < HEADER_BYTES,
         }
     }
 }
@@ -173,7 +193,7 @@ pub fn fingerprint(bytes: &[u8]) -> u64 {
 /// # Errors
 /// If it is larger than [`LIMIT_BYTES`].
 pub fn seal<T: Serialize>(format: Format, content: &T) -> Result<Vec<u8>, DecodeError> {
-    let error = |kind| DecodeError { format, kind };
+    let error = |kind| DecodeError { format, at: 0, kind };
     let payload = bincode::serde::encode_to_vec(content, configuration())
         .map_err(|why| error(DecodeErrorKind::Payload { why: why.to_string() }))?;
     if payload.len() > LIMIT_BYTES {
@@ -194,17 +214,36 @@ pub fn seal<T: Serialize>(format: Format, content: &T) -> Result<Vec<u8>, Decode
 /// # Errors
 /// If the bytes are none; nothing of them is kept.
 pub fn open<T: DeserializeOwned>(format: Format, bytes: &[u8]) -> Result<T, DecodeError> {
-    let error = |kind| DecodeError { format, kind };
-    let payload = payload(format, bytes).map_err(error)?;
+    let (content, end) = open_at(format, bytes, 0)?;
+    if end != bytes.len() {
+        let (stated, found) = ((end - HEADER_BYTES) as u64, bytes.len() - HEADER_BYTES);
+        let kind = DecodeErrorKind::Length { stated, found };
+        return Err(DecodeError { format, at: 0, kind });
+    }
+    Ok(content)
+}
+
+/// The content of one of several that follow each other in a file, and where it ends.
+///
+/// # Errors
+/// If the bytes from there on do not begin with one; nothing of them is kept.
+pub fn open_at<T: DeserializeOwned>(
+    format: Format,
+    bytes: &[u8],
+    at: usize,
+) -> Result<(T, usize), DecodeError> {
+    let error = |kind| DecodeError { format, at, kind };
+    let payload = payload(format, bytes.get(at..).unwrap_or_default()).map_err(error)?;
     let (content, read) = bincode::serde::decode_from_slice::<T, _>(payload, configuration())
         .map_err(|why| error(DecodeErrorKind::Payload { why: why.to_string() }))?;
     if read != payload.len() {
         let why = format!("it ends after {read} of {} bytes", payload.len());
         return Err(error(DecodeErrorKind::Payload { why }));
     }
-    Ok(content)
+    Ok((content, at + HEADER_BYTES + payload.len()))
 }
 
+/// The payload that bytes begin with.
 fn payload(format: Format, bytes: &[u8]) -> Result<&[u8], DecodeErrorKind> {
     if !bytes.starts_with(&format.magic) {
         return Err(DecodeErrorKind::Magic);
@@ -229,9 +268,9 @@ fn payload(format: Format, bytes: &[u8]) -> Result<&[u8], DecodeErrorKind> {
     if stated > LIMIT_BYTES as u64 {
         return Err(DecodeErrorKind::TooLarge { stated });
     }
-    if stated != payload.len() as u64 {
+    let Some(payload) = payload.get(..stated as usize) else {
         return Err(DecodeErrorKind::Length { stated, found: payload.len() });
-    }
+    };
     if xxh3_64(payload) != number(28, 8) {
         return Err(DecodeErrorKind::Checksum);
     }

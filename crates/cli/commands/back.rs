@@ -5,6 +5,7 @@ use super::run;
 use crate::load;
 use crate::recovering::Kept;
 use crate::report;
+use crate::taping::{self, Rig};
 use crate::write;
 use obverse_recovery::Ending;
 use obverse_workcell::{Clock, Safety};
@@ -19,23 +20,25 @@ pub(crate) fn run(arguments: &Arguments) -> Result {
     let module = program.verified.module();
     let kept = Kept::read(arguments.recovering.memory.as_deref(), &program, &file.name)?;
     let mut memory = kept.memory();
-    run::head(arguments, &file.name);
+    let mut tape = taping::create(arguments.tape.as_deref())?;
     let start = machine.digest(&cell);
-    let (there, _) = run::there(arguments, &mut machine, &mut cell, &mut memory);
-    let (there_s, forward_instructions) = (cell.now_s(), machine.executed());
-    let tape_bits = machine.tape().map_or(0, obverse_tape::Tape::recorded_bits);
+    let mut rig = Rig::of(arguments, &program, (&mut machine, &mut cell), tape.as_mut())?;
+    run::head(arguments, &file.name);
+    let (there, _) = run::there(arguments, rig.driven(), &mut memory);
+    let driven = rig.driven();
+    let (there_s, forward_instructions) = (driven.cell().now_s(), driven.machine().executed());
+    let tape_bits = driven.machine().tape().map_or(0, obverse_tape::Tape::recorded_bits);
     if !arguments.json {
         write::line(&report::ending_words(module, &there));
-        write::line(&run::figures_line(&machine, &cell));
+        write::line(&run::figures_line(driven.machine(), driven.cell()));
         write::line("\nand back");
     }
     // The fresh command without which nothing moves after a stop.
-    if cell.is_stopped() {
-        cell.release();
+    if driven.cell().is_stopped() {
+        driven.release();
     }
-    let back = run::back(arguments, &mut machine, &mut cell);
-    let recorded =
-        run::record(arguments, &program, &machine, &cell, &back).and_then(|()| kept.keep(&memory));
+    let back = run::back(arguments, driven);
+    let recorded = rig.end(&report::ending_words(module, &back)).and_then(|()| kept.keep(&memory));
     let is_identical = back == Ending::AtStart && machine.digest(&cell) == start;
     let back_s = cell.now_s() - there_s;
     if arguments.json {

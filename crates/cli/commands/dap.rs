@@ -4,12 +4,13 @@
 //! goes wrong beside the protocol is told on standard error.
 
 use super::Result;
+use crate::load::Program;
 use crate::problem::{Problem, plain};
-use crate::{Outcome, load, show};
-use obverse_dap::{Ended, Launch, Loaded, serve};
+use crate::{Outcome, load, show, taping};
+use obverse_dap::{Attach, Begin, Ended, Launch, Loaded, Wanted, serve};
 use std::io::{Read, Write};
 use std::net::{Ipv4Addr, TcpListener, TcpStream};
-use std::path::absolute;
+use std::path::{PathBuf, absolute};
 
 /// Why standard output is left alone.
 const AFTER_HELP: &str = "\
@@ -19,7 +20,11 @@ standard error. `launch` understands:
   cell         the workcell file, in place of the one that the program names
   seed         what all chance in the workcell follows from (0)
   stopOnEntry  stop before the first action (false)
-  stopAtEnd    stay at the end of the program, from where one can go back (true)";
+  stopAtEnd    stay at the end of the program, from where one can go back (true)
+`attach` opens the tape of a run at its end; it understands:
+  tape         the tape file
+  program      the program that it must be of; a tape has its own
+  cell         the workcell file to try otherwise in, in place of the tape's";
 
 #[derive(clap::Args)]
 #[command(after_help = AFTER_HELP)]
@@ -75,24 +80,59 @@ fn one(input: impl Read + Send + 'static, output: &mut dyn Write) -> Ended {
     serve(input, output, &mut |launch| loaded(launch), &mut |text| show::note(text))
 }
 
-/// The program and the workcell of a launch.
-fn loaded(launch: &Launch) -> std::result::Result<Loaded, String> {
-    let told = |problem: Problem| words(&problem);
-    let program = load::quietly(&launch.program).map_err(told)?;
-    let named = launch.cell.as_deref();
-    let (cell, file) = load::workcell(&program, named, launch.seed).map_err(told)?;
-    load::machine(&program, &cell, &file).map_err(told)?;
-    let module = program.verified.module();
+/// What a client wants to debug.
+fn loaded(wanted: &Wanted) -> std::result::Result<Loaded, String> {
+    let loaded = match wanted {
+        Wanted::Launch(launch) => launched(launch),
+        Wanted::Attach(attach) => attached(attach),
+    };
+    loaded.map_err(|problem| words(&problem))
+}
+
+/// A tape at its end, with the sources of the program that it is said to be of, if it is.
+fn attached(attach: &Attach) -> std::result::Result<Loaded, Problem> {
+    let opened = taping::open(&attach.tape)?;
+    let paths = match &attach.program {
+        Some(program) => {
+            let program = load::quietly(program)?;
+            opened.check_is_of(&program)?;
+            paths(&program)
+        }
+        None => opened.paths(),
+    };
+    let start = opened.start(attach.cell.as_deref());
+    let mut notes = vec![opened.title(), opened.ending()];
+    notes.extend(opened.lacks(start.as_ref().err()));
+    let start = match start {
+        Err(problem) if attach.cell.is_some() => return Err(problem),
+        start => start.ok().map(Box::new),
+    };
+    let recording = Box::new(opened.file.recording);
+    let program = opened.program.verified;
+    Ok(Loaded { program, begin: Begin::Recorded(recording, start), paths, notes })
+}
+
+/// The source files of a program that are on disk.
+fn paths(program: &Program) -> Vec<Option<PathBuf>> {
     let path = |name: &str| {
         let path = program.path_of(name);
         path.is_file().then(|| absolute(&path).unwrap_or(path))
     };
-    let paths = module.sources.iter().map(|file| path(&file.name)).collect();
+    program.verified.module().sources.iter().map(|file| path(&file.name)).collect()
+}
+
+/// The program and the workcell of a launch.
+fn launched(launch: &Launch) -> std::result::Result<Loaded, Problem> {
+    let program = load::quietly(&launch.program)?;
+    let named = launch.cell.as_deref();
+    let (cell, file) = load::workcell(&program, named, launch.seed)?;
+    load::machine(&program, &cell, &file)?;
+    let paths = paths(&program);
     let notes = program.source.iter().flat_map(show::diagnostic_lines).collect();
     let place = file.name;
     let mut notes: Vec<String> = notes;
     notes.push(format!("{} in {place}, seed {}", launch.program.display(), launch.seed));
-    Ok(Loaded { program: program.verified, cell, paths, notes })
+    Ok(Loaded { program: program.verified, begin: Begin::Live(Box::new(cell)), paths, notes })
 }
 
 fn words(problem: &Problem) -> String {

@@ -4,22 +4,29 @@ use super::Result;
 use crate::debug::{Face, Front, Lines};
 use crate::load;
 use crate::parameters::ParameterArguments;
-use crate::problem::Problem;
+use crate::problem::{Problem, plain};
 use crate::report::Report;
 use crate::story::Story;
-use crate::{Outcome, lacking, write};
+use crate::{Outcome, lacking, taping, write};
 use obverse_debugger::{Run, Session};
-use std::path::PathBuf;
+use obverse_sim::Sim;
+use serde_json::json;
+use signal_hook::consts::SIGINT;
+use signal_hook::flag::{register, register_conditional_default};
+use std::path::{Path, PathBuf};
 
 /// What a person may forget to stop: the most instructions that one command runs.
 const LIMIT: u64 = 100_000_000;
 
 #[derive(clap::Args)]
 pub(crate) struct Arguments {
-    /// The program: source, assembly text or module.
-    file: PathBuf,
+    /// The program: source, assembly text or module. A tape has its own.
+    file: Option<PathBuf>,
+    /// Open the tape file of a run at its end, in place of a run that begins.
+    #[arg(long, value_name = "FILE")]
+    tape: Option<PathBuf>,
     /// What all chance in the workcell follows from.
-    #[arg(long, default_value_t = 0, value_name = "N")]
+    #[arg(long, default_value_t = 0, value_name = "N", conflicts_with = "tape")]
     seed: u64,
     /// The workcell file, in place of the one that the program names.
     #[arg(long, value_name = "FILE")]
@@ -38,22 +45,80 @@ pub(crate) struct Arguments {
 }
 
 pub(crate) fn run(arguments: &Arguments) -> Result {
-    let program = load::program_with(&arguments.file, &arguments.parameters.parameters)?;
-    let (cell, file) = load::workcell(&program, arguments.cell.as_deref(), arguments.seed)?;
-    let mut lines = Lines::of(arguments.commands.as_deref(), arguments.json)?;
+    match (&arguments.tape, &arguments.file) {
+        (Some(tape), file) => post_mortem(arguments, tape, file.as_deref()),
+        (None, Some(file)) => live(arguments, file),
+        (None, None) => Err(Problem::new("name a program, or a tape with `--tape`")),
+    }
+}
+
+fn live(arguments: &Arguments, file: &Path) -> Result {
+    let program = load::program_with(file, &arguments.parameters.parameters)?;
+    let (cell, cell_file) = load::workcell(&program, arguments.cell.as_deref(), arguments.seed)?;
+    let lines = Lines::of(arguments.commands.as_deref(), arguments.json)?;
     let run = Run::new(&program.verified, cell)
-        .map_err(|errors| Problem::several(lacking::messages(&program, &file, &errors)))?;
-    let mut session = Session::over(run.simulated(None));
-    let module = program.verified.module();
+        .map_err(|errors| Problem::several(lacking::messages(&program, &cell_file, &errors)))?;
+    if !arguments.json {
+        let name = file.display();
+        write::line(&format!("{name} in {}, seed {}", cell_file.name, arguments.seed));
+    }
+    converse(arguments, run.simulated(None), lines)
+}
+
+/// A run as its tape tells it. What would have been can be tried where its workcell is to be had.
+fn post_mortem(arguments: &Arguments, tape: &Path, file: Option<&Path>) -> Result {
+    let opened = taping::open(tape)?;
+    if let Some(file) = file {
+        let program = load::program_with(file, &arguments.parameters.parameters)?;
+        opened.check_is_of(&program)?;
+    }
+    let lines = Lines::of(arguments.commands.as_deref(), arguments.json)?;
+    let run = opened.run()?;
+    let start = opened.start(arguments.cell.as_deref());
+    let (start, lacks) = match start {
+        Ok(start) => (Some(start), None),
+        Err(problem) if arguments.cell.is_some() => return Err(problem),
+        Err(problem) => (None, Some(problem)),
+    };
+    let head = &opened.file.head;
+    if arguments.json {
+        let told = json!({
+            "type": "tape",
+            "program": head.program,
+            "cell": head.cell,
+            "seed": head.seed,
+            "ending": opened.file.ending,
+            "torn_bytes": opened.file.torn_bytes,
+            "can_try": start.is_some(),
+        });
+        write::line(&told.to_string());
+    } else {
+        write::line(&opened.title());
+        write::line(&opened.ending());
+        opened.lacks(lacks.as_ref()).iter().for_each(|text| write::line(text));
+    }
+    converse(arguments, run.simulated(start), lines)
+}
+
+/// The first Ctrl-C halts the command under way, between instructions; where it has found nothing
+/// to halt, the next one ends the process as it always does.
+fn interrupt(session: &Session<'_, Sim>) -> std::result::Result<(), Problem> {
+    let is_asked = session.interrupter();
+    register_conditional_default(SIGINT, is_asked.clone())
+        .and_then(|_| register(SIGINT, is_asked))
+        .map(|_| ())
+        .map_err(|error| Problem::new(format!("Ctrl-C cannot be heard: {}", plain(&error))))
+}
+
+fn converse(arguments: &Arguments, run: Run<'_, Sim>, mut lines: Lines) -> Result {
+    let mut session = Session::over(run);
+    let module = session.module();
     session.limit(arguments.limit);
+    interrupt(&session)?;
     session.tell_to(match arguments.json {
         true => Box::new(Report::new(module)),
         false => Box::new(Story::new(module)),
     });
-    if !arguments.json {
-        let name = arguments.file.display();
-        write::line(&format!("{name} in {}, seed {}", file.name, arguments.seed));
-    }
     let mut front = Front::over(session, Face::of(arguments.json));
     let failed = front.converse(&mut lines)?;
     Ok(if failed == 0 || lines.is_terminal() { Outcome::Done } else { Outcome::EndedOtherwise })

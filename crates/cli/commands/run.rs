@@ -8,10 +8,10 @@ use crate::problem::Problem;
 use crate::recovering::{self, Kept, Terminal};
 use crate::report::{self, Report};
 use crate::story::Story;
+use crate::taping::{self, Rig};
 use crate::{Outcome, show, write};
-use obverse_recovery::{Bounds, Ending, Incident, Memory, Recovery, drive, recover};
+use obverse_recovery::{Bounds, Driven, Ending, Incident, Memory, Recovery, drive_in, recover_in};
 use obverse_sim::{Missed, Sim};
-use obverse_tape::TapeFile;
 use obverse_vm::{Direction, Limits, Machine};
 use obverse_workcell::{Clock, Safety};
 use serde_json::{Map, json};
@@ -69,10 +69,13 @@ pub(crate) fn run(arguments: &RunArguments) -> Result {
     let mut machine = load::machine(&program, &cell, &file)?;
     let kept = Kept::read(arguments.recovering.memory.as_deref(), &program, &file.name)?;
     let mut memory = kept.memory();
+    let mut tape = taping::create(arguments.tape.as_deref())?;
+    let mut rig = Rig::of(arguments, &program, (&mut machine, &mut cell), tape.as_mut())?;
     head(arguments, &file.name);
-    let (ending, incidents) = there(arguments, &mut machine, &mut cell, &mut memory);
-    let recorded =
-        record(arguments, &program, &machine, &cell, &ending).and_then(|()| kept.keep(&memory));
+    let (ending, incidents) = there(arguments, rig.driven(), &mut memory);
+    let recorded = rig
+        .end(&report::ending_words(program.verified.module(), &ending))
+        .and_then(|()| kept.keep(&memory));
     let missed = missed(arguments, &ending, &cell);
     let told = Told { ending: &ending, incidents: &incidents, missed: &missed };
     finish(arguments, &machine, &cell, &told, recorded.as_ref().err());
@@ -125,11 +128,10 @@ pub(crate) fn head(arguments: &Arguments, cell_name: &str) {
 /// Run forward, recovering from errors, telling it as asked.
 pub(crate) fn there(
     arguments: &Arguments,
-    machine: &mut Machine<'_>,
-    cell: &mut Sim,
+    driven: &mut dyn Driven<'_, Sim>,
     memory: &mut Memory,
 ) -> (Ending, Vec<Incident>) {
-    let module = machine.program().module();
+    let module = driven.machine().program().module();
     let limits = Limits::instructions(arguments.limit);
     let mut recovery = Recovery {
         strategy: arguments.recovering.strategy,
@@ -143,10 +145,10 @@ pub(crate) fn there(
         incidents: Vec::new(),
     };
     let ending = if arguments.json {
-        recover(machine, limits, cell, &mut recovery, &mut Report::new(module))
+        recover_in(driven, limits, &mut recovery, &mut Report::new(module))
     } else {
         let mut story = Story::new(module);
-        let ending = recover(machine, limits, cell, &mut recovery, &mut story);
+        let ending = recover_in(driven, limits, &mut recovery, &mut story);
         tell_fault(&mut story, &ending);
         ending
     };
@@ -154,14 +156,14 @@ pub(crate) fn there(
 }
 
 /// Go back, telling it as asked.
-pub(crate) fn back(arguments: &Arguments, machine: &mut Machine<'_>, cell: &mut Sim) -> Ending {
-    let module = machine.program().module();
+pub(crate) fn back(arguments: &Arguments, driven: &mut dyn Driven<'_, Sim>) -> Ending {
+    let module = driven.machine().program().module();
     let limits = Limits::instructions(arguments.limit);
     if arguments.json {
-        return drive(machine, Direction::Reverse, limits, cell, &mut Report::new(module));
+        return drive_in(driven, Direction::Reverse, limits, &mut Report::new(module));
     }
     let mut story = Story::new(module);
-    let ending = drive(machine, Direction::Reverse, limits, cell, &mut story);
+    let ending = drive_in(driven, Direction::Reverse, limits, &mut story);
     tell_fault(&mut story, &ending);
     ending
 }
@@ -171,28 +173,6 @@ fn tell_fault(story: &mut Story<'_>, ending: &Ending) {
     if matches!(ending, Ending::Fault { .. }) {
         story.tell_headings();
     }
-}
-
-/// Write the tape file of a run, if it was asked for.
-pub(crate) fn record(
-    arguments: &Arguments,
-    program: &Program,
-    machine: &Machine<'_>,
-    cell: &Sim,
-    ending: &Ending,
-) -> std::result::Result<(), Problem> {
-    let Some(path) = &arguments.tape else { return Ok(()) };
-    let cannot = |error| Problem::of_file(path, error);
-    let module = obverse_bytecode::encode(program.verified.module()).map_err(cannot)?;
-    let file = TapeFile {
-        fingerprint: obverse_bytecode::fingerprint(&module),
-        module,
-        seed: arguments.seed,
-        ending: report::ending_words(program.verified.module(), ending),
-        state: machine.snapshot(cell),
-        streams: machine.streams(),
-    };
-    write::file(path, &file.to_bytes().map_err(cannot)?)
 }
 
 /// What is not as the workcell file says that it should be, of a run that believes all is well: of

@@ -6,6 +6,8 @@ use crate::commands::reach::margin;
 use crate::{report, story};
 use obverse_debugger::session::{Action, Variable};
 use obverse_debugger::{Subject, Value};
+use obverse_geometry::{JointConfiguration, Pose};
+use obverse_sim::kinematics;
 use obverse_vm::Direction;
 use serde_json::{Map, Value as Json, json};
 
@@ -105,6 +107,19 @@ pub(super) fn state(front: &mut Front<'_>, _: &str) -> Done {
     let is_output = |it: &&Variable| matches!(it.subject, Some(Subject::Output(_)));
     let (outputs, others): (Vec<&Variable>, Vec<&Variable>) = variables.iter().partition(is_output);
     let mut lines: Vec<String> = others.into_iter().flat_map(shown).collect();
+    let joints = variables.iter().find_map(|it| match it.value {
+        Value::Joints(joints) => Some(JointConfiguration(joints)),
+        _ => None,
+    });
+    let (name, pose) = tool_pose(front, &joints.unwrap_or(JointConfiguration::ZERO));
+    let place_mm = pose.translation_m.iter().map(|part| tenths(part * 1e3));
+    let turned_deg = pose.rotation_vector_rad().map(|part| tenths(part.to_degrees()));
+    let place = format!(
+        "{name:<8} ({}) mm, turned ({}) deg",
+        place_mm.collect::<Vec<String>>().join(", "),
+        turned_deg.join(", ")
+    );
+    lines.insert(joints.map_or(0, |_| 6).min(lines.len()), place);
     let level = |it: &&Variable| {
         let level = if it.value == Value::Bool(true) { "high" } else { "low" };
         format!("{} {level}", it.name)
@@ -113,7 +128,29 @@ pub(super) fn state(front: &mut Front<'_>, _: &str) -> Done {
     lines.extend(outputs.chunks(4).map(|some| some.join(", ")));
     let values: Map<String, Json> =
         variables.iter().map(|it| (it.name.clone(), json_of(&it.value))).collect();
-    Ok(Answer::lines(lines).with("values", values))
+    let pose = json!({
+        "of": name,
+        "translation_m": <[f64; 3]>::from(pose.translation_m),
+        "rotation_vector_rad": pose.rotation_vector_rad(),
+    });
+    Ok(Answer::lines(lines).with("values", values).with("pose", pose))
+}
+
+/// A number to a tenth; nothing is no less than nothing.
+fn tenths(value: f64) -> String {
+    format!("{:.1}", (value * 10.0).round() / 10.0 + 0.0)
+}
+
+/// Where the tool centre point is in the base frame; of a recording, whose workcell may not be
+/// there, where the tool mount is.
+fn tool_pose(front: &Front<'_>, joints: &JointConfiguration) -> (&'static str, Pose) {
+    let mount = kinematics::forward(joints);
+    let tool = usize::from(front.session.machine().tool().0);
+    let tool = front.session.run().cell().and_then(|sim| sim.cell().tools.get(tool));
+    match tool {
+        Some(tool) => ("tcp", mount.compose(&tool.tcp)),
+        None => ("mount", mount),
+    }
 }
 
 /// What is seen of the workcell but its outputs, in columns.

@@ -3,9 +3,10 @@
 //! What goes back is begun before it is answered, so that a step back that is refused is answered
 //! with the reason, and nothing has moved.
 
+use crate::begin::{Stops, run};
 use crate::message::{
-    DataInfo, Disassemble, FrameId, Goto, GotoTargets, Launch, Request, SetBreakpoints,
-    SetExceptions, SetPoints, SetVariable, SourceText, Step, Variables,
+    DataInfo, Disassemble, FrameId, Goto, GotoTargets, Request, SetBreakpoints, SetExceptions,
+    SetPoints, SetVariable, SourceText, Step, Variables, Wanted,
 };
 use crate::motion::{Begun, Going, is_end};
 use crate::points::{Group, Points, data, filters};
@@ -46,7 +47,7 @@ pub(crate) struct Debuggee<'a, 's, 'p> {
     pub(crate) server: &'a mut Server<'s>,
     pub(crate) session: Session<'p, Sim>,
     pub(crate) loaded: &'p Loaded,
-    launch: Launch,
+    launch: Stops,
     points: Points,
     /// What the last stop was about.
     stop: Words,
@@ -57,24 +58,19 @@ pub(crate) struct Debuggee<'a, 's, 'p> {
 }
 
 impl<'a, 's, 'p> Debuggee<'a, 's, 'p> {
-    /// At the start of the program.
+    /// At the start of the program, or at the end of a recording.
     pub(crate) fn begin(
         server: &'a mut Server<'s>,
         loaded: &'p Loaded,
-        launch: Launch,
+        wanted: &Wanted,
     ) -> Result<Self, String> {
-        let run = obverse_debugger::Run::new(&loaded.program, loaded.cell.clone());
-        let run = run.map_err(|errors| {
-            let errors: Vec<String> = errors.iter().map(ToString::to_string).collect();
-            errors.join("; ")
-        })?;
-        let session = Session::over(run.simulated(None));
+        let session = Session::over(run(loaded)?);
         server.inbox.ring(session.interrupter());
         Ok(Self {
             server,
             session,
             loaded,
-            launch,
+            launch: Stops::of(wanted),
             points: Points::new(),
             stop: Words::new("entry", "at the start"),
             targets: Vec::new(),
@@ -90,7 +86,10 @@ impl<'a, 's, 'p> Debuggee<'a, 's, 'p> {
         }
         self.server.out.answer(launch, Value::Null);
         let filters = filters(Some(self.session.module()));
-        let capabilities = json!({ "exceptionBreakpointFilters": filters });
+        let capabilities = json!({
+            "exceptionBreakpointFilters": filters,
+            "supportsSetVariable": self.session.can_try(),
+        });
         self.server.out.event("capabilities", json!({ "capabilities": capabilities }));
         self.server.out.event("initialized", json!({}));
         loop {
@@ -202,6 +201,10 @@ impl<'a, 's, 'p> Debuggee<'a, 's, 'p> {
         self.is_started = true;
         self.server.out.answer(request, Value::Null);
         self.server.out.event("thread", json!({ "reason": "started", "threadId": THREAD }));
+        if self.session.run().cell().is_none() {
+            self.stopped(Words::new("entry", "at the end of the recording"), &[]);
+            return Next::Stay;
+        }
         if self.launch.stop_on_entry && !self.launch.no_debug {
             self.enter();
             self.stopped(Words::new("entry", "at the start of the program"), &[]);

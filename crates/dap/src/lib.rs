@@ -7,15 +7,16 @@
 //!
 //! Reading order: [`frame`], one message among bytes; [`message`], what is asked; `inbox` and
 //! `outbox`, how messages come and go while a run is under way; [`server`], a connection up to
-//! where a program is loaded; `debuggee`, the session over it, with `motion`, how it is driven,
-//! `points`, its breakpoints, `places`, source files and instructions, `shown`, what is looked at,
-//! `console`, what can be typed, and `words`, what stops are called.
+//! where a program is loaded; `begin`, how a session begins; `debuggee`, the session, with
+//! `motion`, how it is driven, `points`, its breakpoints, `places`, source files and instructions,
+//! `shown`, what is looked at, `console`, what can be typed, and `words`, what stops are called.
 //! It knows no files, and no source language.
 
 pub mod frame;
 pub mod message;
 pub mod server;
 
+mod begin;
 mod console;
 mod debuggee;
 mod inbox;
@@ -26,5 +27,5 @@ mod points;
 mod shown;
 mod words;
 
-pub use message::Launch;
-pub use server::{Ended, Loaded, serve};
+pub use message::{Attach, Launch, Wanted};
+pub use server::{Begin, Ended, Loaded, serve};

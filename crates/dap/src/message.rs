@@ -115,6 +115,28 @@ fn yes() -> bool {
     true
 }
 
+/// What `attach` is given.
+#[derive(Clone, Debug, PartialEq, Deserialize)]
+#[serde(rename_all = "camelCase")]
+pub struct Attach {
+    /// The tape file of a run, which is opened at its end.
+    pub tape: PathBuf,
+    /// The program that it must be of; a tape has its own.
+    pub program: Option<PathBuf>,
+    /// The workcell file in which to try what would have been, in place of the tape's.
+    #[serde(default, alias = "workcell")]
+    pub cell: Option<PathBuf>,
+}
+
+/// What a client wants to debug.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Wanted {
+    /// A program, from its start.
+    Launch(Launch),
+    /// A tape, at its end.
+    Attach(Attach),
+}
+
 /// A source as a client names it.
 #[derive(Clone, Debug, Deserialize, Default)]
 #[serde(rename_all = "camelCase", default)]

@@ -3,20 +3,29 @@
 use crate::debuggee::Debuggee;
 use crate::frame::Frame;
 use crate::inbox::Inbox;
-use crate::message::{Client, Launch, Request, request};
+use crate::message::{Client, Request, Wanted, request};
 use crate::outbox::Outbox;
 use obverse_bytecode::Verified;
+use obverse_debugger::Recording;
 use obverse_sim::Sim;
 use serde_json::{Value, json};
 use std::io::{Read, Write};
 use std::path::PathBuf;
 
-/// A program that may be run, and its workcell.
+/// Where a session begins.
+pub enum Begin {
+    /// At the start of a run in this workcell.
+    Live(Box<Sim>),
+    /// At the end of a recording, with the workcell that it began in, if that is to be had.
+    Recorded(Box<Recording>, Option<Box<Sim>>),
+}
+
+/// A program that may be run, or was.
 pub struct Loaded {
     /// What runs.
     pub program: Verified,
-    /// Where it runs.
-    pub cell: Sim,
+    /// Where the session begins.
+    pub begin: Begin,
     /// The path of each source file of the module; none of one that is in no folder.
     pub paths: Vec<Option<PathBuf>>,
     /// What the user is to be told about it, warnings for one.
@@ -37,16 +46,16 @@ pub enum Ended {
 pub fn serve(
     input: impl Read + Send + 'static,
     output: &mut dyn Write,
-    load: &mut dyn FnMut(&Launch) -> Result<Loaded, String>,
+    load: &mut dyn FnMut(&Wanted) -> Result<Loaded, String>,
     log: &mut dyn FnMut(&str),
 ) -> Ended {
     let inbox = Inbox::of(input);
     let mut server = Server { inbox, out: Outbox::to(output), log, client: Client::default() };
-    let (loaded, launch, request) = match server.until_launch(load) {
+    let (loaded, wanted, request) = match server.until_launch(load) {
         Ok(launched) => launched,
         Err(ended) => return ended,
     };
-    match Debuggee::begin(&mut server, &loaded, launch) {
+    match Debuggee::begin(&mut server, &loaded, &wanted) {
         Ok(mut debuggee) => debuggee.serve(&request),
         Err(why) => {
             server.out.refuse(&request, &why);
@@ -100,8 +109,8 @@ impl Server<'_> {
 
     fn until_launch(
         &mut self,
-        load: &mut dyn FnMut(&Launch) -> Result<Loaded, String>,
-    ) -> Result<(Loaded, Launch, Request), Ended> {
+        load: &mut dyn FnMut(&Wanted) -> Result<Loaded, String>,
+    ) -> Result<(Loaded, Wanted, Request), Ended> {
         let mut is_initialized = false;
         loop {
             let request = self.next()?;
@@ -124,18 +133,20 @@ impl Server<'_> {
                 _ if !is_initialized => {
                     self.out.refuse(&request, "the first request must be `initialize`");
                 }
-                "launch" => match request.given::<Launch>().and_then(|launch| {
-                    let loaded = load(&launch)?;
-                    Ok((loaded, launch))
+                "launch" | "attach" => match wanted(&request).and_then(|wanted| {
+                    let loaded = load(&wanted)?;
+                    Ok((loaded, wanted))
                 }) {
-                    Ok((loaded, launch)) => return Ok((loaded, launch, request)),
+                    Ok((loaded, wanted)) => return Ok((loaded, wanted, request)),
                     Err(why) => {
                         self.out.tell("stderr", &why);
                         self.out.refuse(&request, &why);
                     }
                 },
-                "attach" => self.out.refuse(&request, NO_ATTACH),
-                _ => self.out.refuse(&request, "no program is loaded: `launch` one first"),
+                _ => self.out.refuse(
+                    &request,
+                    "no program is loaded: `launch` one, or `attach` to a tape, first",
+                ),
             }
         }
     }
@@ -155,8 +166,13 @@ impl Server<'_> {
     }
 }
 
-const NO_ATTACH: &str = "a tape holds what going back needs, and not what the workcell answered: \
-                         its run cannot be shown again; `launch` the program with its seed";
+/// What a request wants to debug.
+fn wanted(request: &Request) -> Result<Wanted, String> {
+    match request.command.as_str() {
+        "attach" => request.given().map(Wanted::Attach),
+        _ => request.given().map(Wanted::Launch),
+    }
+}
 
 /// What is there, and nothing else.
 fn capabilities() -> Value {

@@ -37,6 +37,9 @@ pub(crate) fn halt(session: &Session<'_, Sim>, halt: &Halt) -> Words {
         Halt::Stopped(Stop::Refused(refusal)) => refused(session, refusal),
         Halt::Stopped(stop) => stopped(session.module(), stop),
         Halt::Changed => Words::new("step", CHANGED),
+        Halt::EndOfRecording if session.run().cell().is_none() => {
+            Words::new("step", "at the end of the recording")
+        }
         Halt::EndOfRecording => Words::new("step", END_OF_RECORDING),
         Halt::StartOfRecording => Words::new("entry", "at the start of what is recorded"),
         Halt::Limit | Halt::Interrupted => Words::new("pause", "paused"),

@@ -50,6 +50,16 @@ pub fn drive(
             machine.raise(error, cell);
             None
         }
+        Order::PassOver => {
+            machine.pass_over_fault(cell);
+            None
+        }
+        Order::Leave => {
+            machine.leave(cell);
+            None
+        }
+        // Notes are the recording's to give.
+        Order::Note(_) => None,
         Order::Alter(alteration) => {
             machine.alter(alteration);
             None

@@ -5,16 +5,18 @@
 //! run make any of them near. So one can go back in two ways that are never confused: in *reverse*,
 //! live, which commands the workcell and obeys the classes; and *rewound*, which shows what was.
 //!
-//! Reading order: [`recording`], what is recorded; [`recorder`] and [`replay`], the workcells that
-//! write and read it; [`mod@drive`], the clock; [`timeline`], the copies; [`rewound`], a moment
-//! shown; [`run`], one line of history; [`notes`], what it did; [`subject`] and [`condition`], what
-//! can be asked; `writers`, what can change that; [`breakpoint`]; [`place`]; [`session`], what
-//! fronts use.
+//! Reading order: [`recording`], what is recorded; [`file`](mod@file), its file (`wire`), and
+//! [`taped`], a run that is written to one as it goes; [`recorder`] and [`replay`], the workcells
+//! that write and read it; [`mod@drive`], the clock; [`timeline`], the copies; [`rewound`], a
+//! moment shown; [`run`], one line of history; [`notes`], what it did; [`subject`] and
+//! [`condition`], what can be asked; `writers`, what can change that; [`breakpoint`]; [`place`];
+//! [`session`], what fronts use.
 //! It knows modules and machines, and neither source languages nor how anything is shown.
 
 pub mod breakpoint;
 pub mod condition;
 pub mod drive;
+pub mod file;
 pub mod notes;
 pub mod place;
 pub mod recorder;
@@ -24,13 +26,17 @@ pub mod rewound;
 pub mod run;
 pub mod session;
 pub mod subject;
+pub mod taped;
 pub mod timeline;
+mod wire;
 mod writers;
 
 pub use breakpoint::{Breakpoint, Hit, Piece, PlaceError, Places, What};
 pub use condition::{ConditionError, Expression};
+pub use file::{Head, TapeFile, Writer};
 pub use place::{Mode, Position, SourcePlace};
 pub use recording::{Moment, Recording};
 pub use run::{NoFork, Run};
 pub use session::{Change, Declined, Grain, Halt, Session, Walk, Why};
 pub use subject::{Look, Subject, Value};
+pub use taped::Taped;

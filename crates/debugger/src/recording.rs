@@ -7,12 +7,16 @@
 
 use obverse_geometry::{JointConfiguration, Pose};
 use obverse_isa::{ErrorId, GlobalId, LocalId};
+use obverse_tape::Note;
 use obverse_vm::Alteration;
 use obverse_workcell::{Fault, ItemId, Motion, MotionReport, ToolId};
+use serde::{Deserialize, Serialize};
 
 /// A place on the time line of a run: how many instructions had been run or reversed, an act that
 /// failed counting as one. Never goes back, whichever way the machine goes.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash)]
+#[derive(
+    Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize,
+)]
 pub struct Moment(pub u64);
 
 impl std::fmt::Display for Moment {
@@ -30,7 +34,7 @@ impl Moment {
 }
 
 /// A run as it was recorded.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Recording {
     /// What does not change of the workcell.
     pub facts: Facts,
@@ -45,7 +49,7 @@ pub struct Recording {
 }
 
 /// What a program asks of a workcell that does not change.
-#[derive(Clone, Debug, Default, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Facts {
     /// How many outputs there are.
     pub outputs: u16,
@@ -60,7 +64,7 @@ pub struct Facts {
 }
 
 /// What can be seen of a workcell between two commands.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct World {
     /// Where the joints are.
     pub joints: JointConfiguration,
@@ -81,7 +85,7 @@ pub struct World {
 }
 
 /// What a workcell answered.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Log {
     /// One a command, in their order: some 56 bytes each.
     pub frames: Vec<Frame>,
@@ -91,10 +95,12 @@ pub struct Log {
     pub faults: Vec<Fault>,
     /// What readings gave, each where it was not the same as the time before: 32 bytes each.
     pub readings: Vec<Reading>,
+    /// What was noted on the tape, in its order.
+    pub notes: Vec<Note>,
 }
 
 /// What came of a command.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Frame {
     /// The command.
     pub command: Command,
@@ -113,7 +119,7 @@ pub struct Frame {
 }
 
 /// A command.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub enum Command {
     /// A motion: which of the recording's.
     Execute(u32),
@@ -133,7 +139,7 @@ pub enum Command {
 }
 
 /// A motion and what came of it.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Moved {
     /// What was commanded.
     pub motion: Motion,
@@ -146,7 +152,7 @@ pub struct Moved {
 }
 
 /// Something that is read.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 pub enum Sense {
     /// An input.
     Input(u16),
@@ -157,7 +163,7 @@ pub enum Sense {
 }
 
 /// What a reading gave.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Reading {
     /// Which reading of the run it was.
     pub number: u64,
@@ -168,7 +174,7 @@ pub struct Reading {
 }
 
 /// A row of steps that the machine was driven by one order.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Stretch {
     /// The order.
     pub order: Order,
@@ -179,7 +185,8 @@ pub struct Stretch {
 }
 
 /// How a machine is driven.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(into = "crate::wire::Order", from = "crate::wire::Order")]
 pub enum Order {
     /// Forward.
     Forward,
@@ -189,6 +196,12 @@ pub enum Order {
     Unwind,
     /// The fault that stopped the act at hand became an error of the program.
     Raise(ErrorId),
+    /// On behind the act that a fault has stopped.
+    PassOver,
+    /// All that is under way was left for the cleanup.
+    Leave,
+    /// Something was noted on the tape: which of the recording's notes.
+    Note(u32),
     /// From here on otherwise than the program says.
     Alter(Option<Alteration>),
     /// A variable of the program was given these bits.

@@ -142,8 +142,9 @@ impl<'p> Rewound<'p> {
             self.place_at(&from);
         }
         self.walk(recording, moment);
-        if self.moment >= recording.end && self.stretch + 1 >= recording.stretches.len() {
-            // What was commanded beside the program since.
+        if self.moment >= recording.end {
+            // What was ordered there and took no time, and what was commanded beside the program.
+            self.enter(recording);
             self.cursor.go_to_frame(recording, recording.log.frames.len());
         }
     }
@@ -234,8 +235,13 @@ impl<'p> Rewound<'p> {
             let Some(next) = recording.stretches.get(self.stretch + 1) else { return };
             self.stretch += 1;
             self.cursor.go_to_frame(recording, next.frame as usize);
-            if let Order::Alter(alteration) = next.order {
-                self.machine.alter(alteration);
+            match next.order {
+                Order::Alter(alteration) => self.machine.alter(alteration),
+                Order::Note(index) => {
+                    let note = recording.log.notes.get(index as usize);
+                    note.into_iter().for_each(|note| self.machine.note(note.clone()));
+                }
+                _ => {}
             }
         }
     }
@@ -267,10 +273,7 @@ impl<'p> Rewound<'p> {
         let mut replay = Replay::new(recording, &mut self.cursor);
         let driven = drive(&mut self.machine, order, pace, &mut replay, observer);
         self.moment = self.moment.after(driven.ticks);
-        // What was to happen here did not.
-        if driven.ticks == 0 && driven.stop.is_some() {
-            return None;
-        }
-        Some(driven)
+        // With no time passed, what was to happen here did not.
+        (driven.ticks > 0).then_some(driven)
     }
 }

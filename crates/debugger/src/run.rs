@@ -12,6 +12,7 @@ use crate::replay::{Cursor, Replay};
 use crate::rewound::Rewound;
 use crate::timeline::{Checkpoint, Timeline};
 use obverse_bytecode::Verified;
+use obverse_tape::{Snapshot, Streams};
 use obverse_vm::{LinkError, Machine, Observer, Stop};
 use obverse_workcell::{Fault, Workcell};
 use std::cell::Cell;
@@ -116,6 +117,12 @@ impl<'p, C: Workcell> Run<'p, C> {
         self.cell.as_ref()
     }
 
+    /// Whether copies of its workcell are kept, so that it can go on otherwise.
+    #[must_use]
+    pub fn is_simulated(&self) -> bool {
+        self.copies.is_some()
+    }
+
     /// How it came there.
     #[must_use]
     pub fn recording(&self) -> &Recording {
@@ -152,6 +159,19 @@ impl<'p, C: Workcell> Run<'p, C> {
         let mut rewound = Rewound::at(&self.machine, self.timeline.before(self.recording.end));
         rewound.go_to(&self.recording, &self.timeline, self.recording.end);
         rewound
+    }
+
+    /// The state at its end and the tape there, as plain data.
+    #[must_use]
+    pub fn as_data(&self) -> (Snapshot, Streams) {
+        let streams = self.machine.streams();
+        match &self.cell {
+            Some(cell) => (self.machine.snapshot(cell), streams),
+            None => {
+                let mut cursor = self.rewound().cursor().clone();
+                (self.machine.snapshot(&Replay::new(&self.recording, &mut cursor)), streams)
+            }
+        }
     }
 
     /// Drive the machine where the run has come to, and record it; none of a recording. It stops
@@ -348,6 +368,7 @@ impl Recording {
                 motions: log.motions[..motions].to_vec(),
                 faults: log.faults[..faults].to_vec(),
                 readings: log.readings[..at.cursor().readings()].to_vec(),
+                notes: log.notes.clone(),
             },
             stretches: self.stretches.iter().take(at.stretch() + 1).copied().collect(),
             end: at.moment(),

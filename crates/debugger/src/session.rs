@@ -189,6 +189,12 @@ impl<'p, C: Workcell> Session<'p, C> {
         }
     }
 
+    /// Whether what would have been can be tried: a copy of the workcell is kept.
+    #[must_use]
+    pub fn can_try(&self) -> bool {
+        self.run.is_simulated()
+    }
+
     /// How many runs were left for what is tried.
     #[must_use]
     pub fn tries(&self) -> usize {

@@ -3,9 +3,10 @@
 //! Knows nothing of the words (forward, left, up) that a language has for them.
 
 use nalgebra::Vector3;
+use serde::{Deserialize, Serialize};
 
 /// The frame in which a direction is meant.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Frame {
     /// The tool centre point.
     Tcp,
@@ -16,7 +17,7 @@ pub enum Frame {
 }
 
 /// A signed axis of a frame.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Axis {
     /// +x
     PlusX,

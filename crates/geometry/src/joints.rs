@@ -3,11 +3,13 @@
 //! Poses do not fix the turn of the wrist, so nothing that must be restored is kept as a pose.
 //! Knows nothing of limits, which belong to an arm.
 
+use serde::{Deserialize, Serialize};
+
 /// The number of joints of every arm this system drives.
 pub const JOINT_COUNT: usize = 6;
 
 /// Joint positions from base to wrist, in radians.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct JointConfiguration(pub [f64; JOINT_COUNT]);
 
 impl JointConfiguration {

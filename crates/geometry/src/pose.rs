@@ -4,14 +4,36 @@
 //! Knows nothing of joints.
 
 use nalgebra::{Matrix3, Vector3};
+use serde::{Deserialize, Serialize};
 
 /// A rigid transform: rotation matrix and translation in metres.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(into = "[f64; 12]", from = "[f64; 12]")]
 pub struct Pose {
     /// Orthonormal, right-handed.
     pub rotation: Matrix3<f64>,
     /// In metres.
     pub translation_m: Vector3<f64>,
+}
+
+impl From<Pose> for [f64; 12] {
+    /// The rotation column by column, then the translation.
+    fn from(pose: Pose) -> Self {
+        let numbers = pose.rotation.iter().chain(&pose.translation_m);
+        let mut all = [0.0; 12];
+        all.iter_mut().zip(numbers).for_each(|(place, number)| *place = *number);
+        all
+    }
+}
+
+impl From<[f64; 12]> for Pose {
+    fn from(numbers: [f64; 12]) -> Self {
+        let (rotation, translation_m) = numbers.split_at(9);
+        Self {
+            rotation: Matrix3::from_column_slice(rotation),
+            translation_m: Vector3::from_column_slice(translation_m),
+        }
+    }
 }
 
 impl Pose {

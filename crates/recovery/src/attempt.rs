@@ -10,7 +10,7 @@ use crate::recover::{Plan, Run, Watch};
 use crate::tell::{Step, Why};
 use obverse_geometry::{Axis, Frame};
 use obverse_isa::Instr;
-use obverse_vm::{Direction, Mark, Stop};
+use obverse_vm::{Mark, Stop};
 use obverse_workcell::{Goal, Motion, Path, Speed, Workcell};
 
 /// How often a way back that is blocked is tried again.
@@ -22,7 +22,7 @@ impl<C: Workcell> Run<'_, '_, '_, C> {
     /// Make an attempt. It counts, unless it could not be begun.
     pub(crate) fn carry_out(&mut self, index: usize, plan: Plan) -> Result<(), GiveUp> {
         let incident = &self.open[index];
-        let began_s = self.cell.now_s();
+        let began_s = self.driven.cell().now_s();
         let planned = if let Plan::Back { actions, .. } = plan { actions } else { 0 };
         let search = incident.next_search(&self.trail, planned);
         let policy = reversal(self.declared(incident)).filter(|_| planned > 0);
@@ -45,7 +45,7 @@ impl<C: Workcell> Run<'_, '_, '_, C> {
         let actions = done.unwrap_or(planned);
         self.open[index].attempts.push(Attempt { actions, began_s, search });
         done?;
-        self.machine.alter(change);
+        self.driven.alter(change);
         self.say_of(index, |incident| Step::Again { incident, change });
         Ok(())
     }
@@ -63,9 +63,9 @@ impl<C: Workcell> Run<'_, '_, '_, C> {
         let mut tries = 0;
         loop {
             let mut watch = Watch { trail: &mut self.trail, teller: &mut *self.teller };
-            match self.machine.reverse_to(Mark::at(mark), self.cell, &mut watch) {
+            match self.driven.reverse_to(Mark::at(mark), &mut watch) {
                 Stop::AtMark | Stop::OffMark | Stop::AtStart => {
-                    self.trail.cut(self.machine.state().steps());
+                    self.trail.cut(self.driven.machine().state().steps());
                     return Ok(count - self.trail.actions().len());
                 }
                 Stop::Fault { fault, pc, .. } => {
@@ -87,7 +87,7 @@ impl<C: Workcell> Run<'_, '_, '_, C> {
     /// Motions that ended where they began are taken back in the program alone: going there again
     /// and back would press anew on what had stopped them, for nothing.
     fn pass_round_trip(&mut self, index: usize, since: u64) -> Result<(), GiveUp> {
-        let Some(motion) = self.trail.round_trip(since, &self.cell.joints()) else {
+        let Some(motion) = self.trail.round_trip(since, &self.driven.cell().joints()) else {
             return Ok(());
         };
         let (steps, pc) = (motion.steps, motion.pc);
@@ -99,7 +99,7 @@ impl<C: Workcell> Run<'_, '_, '_, C> {
     /// taken back.
     fn cut_into_act(&mut self, count: usize, pc: u32) -> usize {
         let prefix = self.module().code.get(pc as usize).map_or(0, Instr::prefix);
-        let before = self.machine.state().steps().saturating_sub(1 + u64::from(prefix));
+        let before = self.driven.machine().state().steps().saturating_sub(1 + u64::from(prefix));
         self.trail.cut_into(before, pc);
         count - self.trail.actions().len()
     }
@@ -109,7 +109,7 @@ impl<C: Workcell> Run<'_, '_, '_, C> {
     /// recovered from is pending again.
     fn forward_from_there(&mut self, index: usize) -> Result<(), GiveUp> {
         let mut watch = Watch { trail: &mut self.trail, teller: &mut *self.teller };
-        match self.machine.step(Direction::Forward, self.cell, &mut watch) {
+        match self.driven.step(&mut watch) {
             Ok(()) | Err(Stop::Raised { .. }) => Ok(()),
             Err(Stop::Fault { fault, pc, .. }) => {
                 let named = fault::error_of(self.module(), &fault);
@@ -134,26 +134,25 @@ impl<C: Workcell> Run<'_, '_, '_, C> {
 
     /// The tool straight back, as far as it goes, and how far that was, in metres.
     fn back_up(&mut self, distance_m: f64) -> f64 {
-        let (began_m, tool) = (self.cell.way_m(), self.machine.tool());
+        let (began_m, tool) = (self.driven.cell().way_m(), self.driven.machine().tool());
         let gone_m = |cell: &C| cell.way_m() - began_m;
         let mut step_m = distance_m;
-        self.cell.watch(&[]);
-        while step_m >= BACK_UP_MIN_M && gone_m(self.cell) + BACK_UP_MIN_M <= distance_m {
-            let (from, before_m) = (self.cell.joints(), self.cell.way_m());
+        while step_m >= BACK_UP_MIN_M && gone_m(self.driven.cell()) + BACK_UP_MIN_M <= distance_m {
+            let (from, before_m) = (self.driven.cell().joints(), self.driven.cell().way_m());
             let (axis, frame) = (Axis::MinusZ, Frame::Tcp);
             let goal = Goal::Displaced { from, distance_m: step_m, axis, frame };
             let (path, speed) = (Path::Linear, Speed::Normal);
             let motion = Motion { goal, path, speed, tool, force_limit_n: None };
-            if let Err(fault) = self.cell.execute(&motion) {
-                let has_moved = self.cell.way_m() > before_m;
+            if let Err(fault) = self.driven.execute(&motion) {
+                let has_moved = self.driven.cell().way_m() > before_m;
                 if !self.may_move(&fault) || has_moved {
                     break;
                 }
                 step_m /= 2.0;
             }
-            step_m = step_m.min(distance_m - gone_m(self.cell));
+            step_m = step_m.min(distance_m - gone_m(self.driven.cell()));
         }
-        gone_m(self.cell)
+        gone_m(self.driven.cell())
     }
 
     fn restart(&mut self, index: usize) -> Result<(), GiveUp> {
@@ -165,9 +164,9 @@ impl<C: Workcell> Run<'_, '_, '_, C> {
     }
 
     fn unwind(&mut self, steps: u64) -> Result<(), GiveUp> {
-        match self.machine.unwind_to(Mark::at(steps), self.cell) {
+        match self.driven.unwind_to(Mark::at(steps)) {
             Ok(()) | Err(Stop::AtStart) => {
-                self.trail.cut(self.machine.state().steps());
+                self.trail.cut(self.driven.machine().state().steps());
                 Ok(())
             }
             Err(_) => Err(GiveUp::NoWayBack { never: self.trail.never() }),

@@ -1,9 +1,10 @@
 //! A fault of the workcell that becomes an error of the program.
 
+use crate::driven::Driven;
 use crate::trail::Trail;
 use obverse_bytecode::{FaultName, Module};
 use obverse_isa::ErrorId;
-use obverse_vm::{Direction, Event, Machine};
+use obverse_vm::{Direction, Event};
 use obverse_workcell::{Fault, Workcell};
 
 /// The error that a program says a fault is.
@@ -18,16 +19,16 @@ pub(crate) fn error_of(module: &Module, fault: &Fault) -> Option<ErrorId> {
 }
 
 /// Let the fault that stopped the act at an instruction be an error of the program. Whether it
-/// could
-/// be. The machine does not tell of an act that a fault has ended; it is an action all the same.
-pub(crate) fn raise(
-    machine: &mut Machine<'_>,
+/// could be. The machine does not tell of an act that a fault has ended; it is an action all the
+/// same.
+pub(crate) fn raise<C: Workcell>(
+    driven: &mut dyn Driven<'_, C>,
     error: ErrorId,
     pc: u32,
-    cell: &mut dyn Workcell,
     trail: &mut Trail<'_>,
 ) -> bool {
-    let is_raised = machine.raise(error, cell);
+    let is_raised = driven.raise(error);
+    let machine = driven.machine();
     let instr = machine.program().module().code.get(pc as usize);
     if let Some(instr) = instr.filter(|_| is_raised) {
         let state = machine.state();
@@ -42,7 +43,7 @@ pub(crate) fn raise(
             frames: state.frames().len(),
             branches: state.branches(),
         };
-        trail.note(&event, cell);
+        trail.note(&event, driven.cell());
     }
     is_raised
 }

@@ -3,6 +3,7 @@
 //! It is what other strategies are measured against, since it knows what only the world knows; no
 //! real cell has it.
 
+use crate::driven::Direct;
 use crate::fault;
 use crate::recover::{Foresight, Site};
 use crate::trail::Trail;
@@ -92,7 +93,8 @@ fn forward<C: Workcell>(
             }
             Err(Stop::Fault { fault, pc, .. }) if !cell.is_stopped() => {
                 let error = fault::error_of(machine.program().module(), &fault)?;
-                if !fault::raise(machine, error, pc, cell, &mut watch.0) {
+                let mut driven = Direct { machine: &mut *machine, cell: &mut *cell };
+                if !fault::raise(&mut driven, error, pc, &mut watch.0) {
                     return None;
                 }
             }

@@ -5,6 +5,7 @@
 //! work.
 //!
 //! Reading order: [`ending`], how a run ends; [`mod@drive`], a run that never goes back by itself;
+//! [`driven`], what is driven;
 //! [`trail`], what it may be taken back to; [`strategy`], the ways of recovering; [`incident`], an
 //! error at a place and what has been tried, with the words for a place, a fault that becomes an
 //! error and what the program asks for (`place`, `fault`, `asked`); [`depth`], how far to go back
@@ -22,6 +23,7 @@ pub mod change;
 pub mod code;
 pub mod depth;
 pub mod drive;
+pub mod driven;
 pub mod ending;
 mod fault;
 pub mod foresight;
@@ -36,12 +38,13 @@ pub mod trail;
 
 pub use asked::sequence;
 pub use code::MemoryCode;
-pub use drive::drive;
+pub use drive::{drive, drive_in};
+pub use driven::{Direct, Driven};
 pub use ending::{Ending, GiveUp};
 pub use foresight::Clairvoyant;
 pub use incident::{Attempt, Incident, Outcome, Search};
 pub use memory::{Memory, MemoryError, Subject};
-pub use recover::{Foresight, Recovery, Site, recover};
+pub use recover::{Foresight, Recovery, Site, recover, recover_in};
 pub use strategy::{Bounds, Strategy};
 pub use tell::{Operator, Step, Teller, Unattended, Why};
 pub use trail::{Action, Trail};

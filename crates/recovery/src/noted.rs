@@ -1,22 +1,21 @@
 //! The steps of a recovery as notes on the tape.
 
+use crate::driven::Driven;
 use crate::incident::Incident;
 use crate::tell::{Step, Teller};
 use obverse_tape::{Note, Noted};
-use obverse_vm::Machine;
 use obverse_workcell::Workcell;
 
 /// Tell a step, and note it on the tape.
 pub(crate) fn say<C: Workcell>(
-    machine: &mut Machine<'_>,
+    driven: &mut dyn Driven<'_, C>,
     teller: &mut dyn Teller,
-    cell: &C,
     step: &Step<'_>,
 ) {
-    teller.on_step(step, cell);
+    teller.on_step(step, driven.cell());
     let Some((error, pc, attempts, what)) = noted(step) else { return };
-    let (steps, time_s) = (machine.state().steps(), cell.now_s());
-    machine.note(Note { steps, time_s, error, pc, attempts, what });
+    let (steps, time_s) = (driven.machine().state().steps(), driven.cell().now_s());
+    driven.note(Note { steps, time_s, error, pc, attempts, what });
 }
 
 fn noted(step: &Step<'_>) -> Option<(u16, u32, u32, Noted)> {

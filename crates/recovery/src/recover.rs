@@ -4,6 +4,7 @@ use crate::asked::{self, reversal};
 use crate::change;
 use crate::depth::{Policy, Question};
 use crate::drive;
+use crate::driven::{Direct, Driven};
 use crate::ending::{Ending, GiveUp};
 use crate::fault;
 use crate::incident::{Attempt, Incident, Outcome};
@@ -94,11 +95,20 @@ pub fn recover<C: Workcell>(
     recovery: &mut Recovery<'_, C>,
     teller: &mut dyn Teller,
 ) -> Ending {
-    let trail = Trail::new(machine.program().module(), cell.joints());
-    let begin = machine.executed();
+    recover_in(&mut Direct { machine, cell }, limits, recovery, teller)
+}
+
+/// The same, of a machine and a workcell that are driven in a way of their own.
+pub fn recover_in<C: Workcell>(
+    driven: &mut dyn Driven<'_, C>,
+    limits: Limits,
+    recovery: &mut Recovery<'_, C>,
+    teller: &mut dyn Teller,
+) -> Ending {
+    let trail = Trail::new(driven.machine().program().module(), driven.cell().joints());
+    let begin = driven.machine().executed();
     let mut run = Run {
-        machine,
-        cell,
+        driven,
         recovery,
         teller,
         trail,
@@ -118,8 +128,7 @@ pub fn recover<C: Workcell>(
 
 /// A run under way.
 pub(crate) struct Run<'r, 'p, 'o, C> {
-    pub(crate) machine: &'r mut Machine<'p>,
-    pub(crate) cell: &'r mut C,
+    pub(crate) driven: &'r mut dyn Driven<'p, C>,
     pub(crate) recovery: &'r mut Recovery<'o, C>,
     pub(crate) teller: &'r mut dyn Teller,
     pub(crate) trail: Trail<'p>,
@@ -176,18 +185,18 @@ pub(crate) enum Plan {
 
 impl<'p, C: Workcell> Run<'_, 'p, '_, C> {
     pub(crate) fn module(&self) -> &'p Module {
-        self.machine.program().module()
+        self.driven.machine().program().module()
     }
 
     fn until_ended(&mut self, allowed: u64) -> Ending {
         loop {
-            let left = allowed.saturating_sub(self.machine.executed());
+            let left = allowed.saturating_sub(self.driven.machine().executed());
             let stop = if left == 0 { Stop::Budget } else { self.forward(left) };
             self.close_passed();
             let ended = match stop {
                 Stop::Due { error, pc } => self.due(error, pc),
                 Stop::Fault { fault, pc, direction: Direction::Forward } => self.fault(fault, pc),
-                stop => drive::ending(stop, self.machine),
+                stop => drive::ending(stop, self.driven.machine()),
             };
             if let Some(ending) = ended.and_then(|ending| self.clean_up(ending)) {
                 return ending;
@@ -206,10 +215,10 @@ impl<'p, C: Workcell> Run<'_, 'p, '_, C> {
             Ending::Unhandled(_) => return Some(self.left.take().unwrap_or(ending)),
             _ => {}
         }
-        if self.cell.is_stopped() || !self.machine.leave(self.cell) {
+        if self.driven.cell().is_stopped() || !self.driven.leave() {
             return Some(self.left.take().unwrap_or(ending));
         }
-        self.machine.alter(None);
+        self.driven.alter(None);
         self.close_all(&ending);
         self.trail.begin_anew();
         self.left = Some(ending);
@@ -219,22 +228,23 @@ impl<'p, C: Workcell> Run<'_, 'p, '_, C> {
     /// Forward until something stops it. While an error is open the machine goes step by step, so
     /// that it does as the program says again as soon as it is past.
     fn forward(&mut self, left: u64) -> Stop {
-        let was_cleaning_up = self.machine.is_cleaning_up();
+        let was_cleaning_up = self.driven.machine().is_cleaning_up();
         let mut watch = Watch { trail: &mut self.trail, teller: &mut *self.teller };
         let Some(incident) = self.open.last() else {
-            let limits = Limits::instructions(left);
-            return self.machine.run(Direction::Forward, limits, self.cell, &mut watch);
+            return self.driven.run(Direction::Forward, left, &mut watch);
         };
-        let allowed = self.machine.executed().saturating_add(left);
-        while !incident.is_past(watch.trail) && self.machine.is_cleaning_up() == was_cleaning_up {
-            if self.machine.executed() >= allowed {
+        let allowed = self.driven.machine().executed().saturating_add(left);
+        while !incident.is_past(watch.trail)
+            && self.driven.machine().is_cleaning_up() == was_cleaning_up
+        {
+            if self.driven.machine().executed() >= allowed {
                 return Stop::Budget;
             }
-            match self.machine.step(Direction::Forward, self.cell, &mut watch) {
+            match self.driven.step(&mut watch) {
                 Ok(()) | Err(Stop::Raised { .. }) => {}
                 Err(stop) => return stop,
             }
-            let state = self.machine.state();
+            let state = self.driven.machine().state();
             self.is_stopping |= state.frames().len() == 1 && !state.raised().is_empty();
         }
         Stop::Raised { error: incident.error, pc: incident.pc }
@@ -243,7 +253,7 @@ impl<'p, C: Workcell> Run<'_, 'p, '_, C> {
     /// A fault that the program names becomes an error of it.
     fn fault(&mut self, fault: Fault, pc: u32) -> Option<Ending> {
         let direction = Direction::Forward;
-        let is_passed = if self.machine.is_cleaning_up() {
+        let is_passed = if self.driven.machine().is_cleaning_up() {
             self.pass_over(&fault, pc)
         } else {
             let error = fault::error_of(self.module(), &fault);
@@ -255,13 +265,13 @@ impl<'p, C: Workcell> Run<'_, 'p, '_, C> {
     /// Let a fault be an error of the program. Whether it could be.
     pub(crate) fn raise(&mut self, fault: &Fault, pc: u32, error: ErrorId) -> bool {
         self.say(&Step::Fault { fault, pc, error });
-        self.may_move(fault) && fault::raise(self.machine, error, pc, self.cell, &mut self.trail)
+        self.may_move(fault) && fault::raise(self.driven, error, pc, &mut self.trail)
     }
 
     /// The cleanup goes on behind what a fault has stopped in it. Whether it can.
     fn pass_over(&mut self, fault: &Fault, pc: u32) -> bool {
         self.say(&Step::PassedOver { fault, pc });
-        let is_passed = self.may_move(fault) && self.machine.pass_over_fault(self.cell);
+        let is_passed = self.may_move(fault) && self.driven.pass_over_fault();
         let (fault, direction) = (fault.clone(), Direction::Forward);
         self.amiss.get_or_insert(Ending::Fault { fault, pc, direction });
         is_passed
@@ -269,7 +279,7 @@ impl<'p, C: Workcell> Run<'_, 'p, '_, C> {
 
     /// Tell a step, and note it on the tape.
     pub(crate) fn say(&mut self, step: &Step<'_>) {
-        noted::say(self.machine, self.teller, self.cell, step);
+        noted::say(self.driven, self.teller, step);
     }
 
     /// Tell a step about the incident of a number, and note it on the tape.
@@ -279,17 +289,17 @@ impl<'p, C: Workcell> Run<'_, 'p, '_, C> {
         step: impl FnOnce(&'s Incident) -> Step<'s>,
     ) {
         let step = step(&self.open[index]);
-        noted::say(self.machine, self.teller, self.cell, &step);
+        noted::say(self.driven, self.teller, &step);
     }
 
     /// Whether the arm may move; after a stop, only by a fresh command.
     pub(crate) fn may_move(&mut self, fault: &Fault) -> bool {
-        if !self.cell.is_stopped() {
+        if !self.driven.cell().is_stopped() {
             return true;
         }
         let is_released = self.recovery.operator.release(fault);
         if is_released {
-            self.cell.release();
+            self.driven.release();
             self.say(&Step::Released);
         }
         is_released
@@ -310,7 +320,7 @@ impl<'p, C: Workcell> Run<'_, 'p, '_, C> {
     /// The incident of an error that is due: the open one at the same place, one that was got past
     /// in vain, or a new one.
     fn incident(&mut self, error: ErrorId, pc: u32) -> usize {
-        let branches = self.machine.state().branches();
+        let branches = self.driven.machine().state().branches();
         let newest = self.trail.newest_of(&branches);
         let number = newest.map_or(self.trail.count(), |action| action.number);
         let entry = newest.map_or(pc, |action| action.entry);
@@ -329,18 +339,18 @@ impl<'p, C: Workcell> Run<'_, 'p, '_, C> {
             pc,
             entry,
             branches,
-            is_in_cleanup: self.machine.is_cleaning_up(),
+            is_in_cleanup: self.driven.machine().is_cleaning_up(),
             place: place(self.module(), newest.map_or(pc, |action| action.pc)),
             number,
-            began_s: self.cell.now_s(),
-            began_way_m: self.cell.way_m(),
+            began_s: self.driven.cell().now_s(),
+            began_way_m: self.driven.cell().way_m(),
             attempts: Vec::new(),
             outcome: None,
         });
         if let (Some(foresight), Some(incident)) =
             (self.recovery.foresight.as_mut(), self.open.last())
         {
-            foresight.on_error(incident, self.cell);
+            foresight.on_error(incident, self.driven.cell());
         }
         self.open.len() - 1
     }
@@ -381,8 +391,8 @@ impl<'p, C: Workcell> Run<'_, 'p, '_, C> {
             error: &self.declared(incident).name,
             place: &incident.place,
             tried: &incident.depths(),
-            now_s: self.cell.now_s(),
-            joints: self.cell.joints(),
+            now_s: self.driven.cell().now_s(),
+            joints: self.driven.cell().joints(),
             give_up_s: self.recovery.person_s,
             attempts_left: self.attempts_left(incident),
         };
@@ -397,8 +407,8 @@ impl<'p, C: Workcell> Run<'_, 'p, '_, C> {
     fn foresee(&mut self, index: usize) -> Result<Plan, GiveUp> {
         let incident = &self.open[index];
         let site = Site {
-            machine: self.machine,
-            cell: &*self.cell,
+            machine: self.driven.machine(),
+            cell: self.driven.cell(),
             trail: &self.trail,
             incident,
             attempts_left: self.attempts_left(incident),
@@ -431,9 +441,9 @@ impl<'p, C: Workcell> Run<'_, 'p, '_, C> {
         let Bounds { attempts, time_s, distance_m } = self.bounds(incident);
         if incident.attempts.len() as u64 >= u64::from(attempts) {
             Err(GiveUp::Attempts(attempts))
-        } else if self.cell.now_s() - incident.began_s >= time_s {
+        } else if self.driven.cell().now_s() - incident.began_s >= time_s {
             Err(GiveUp::Time(time_s))
-        } else if self.cell.way_m() - incident.began_way_m >= distance_m {
+        } else if self.driven.cell().way_m() - incident.began_way_m >= distance_m {
             Err(GiveUp::Distance(distance_m))
         } else {
             Ok(())
@@ -447,18 +457,21 @@ impl<'p, C: Workcell> Run<'_, 'p, '_, C> {
         let actions = self.trail.actions();
         let since = |action: Option<&Action>| {
             action.map(|action| {
-                (self.cell.now_s() - action.began_s, self.cell.way_m() - action.began_way_m)
+                (
+                    self.driven.cell().now_s() - action.began_s,
+                    self.driven.cell().way_m() - action.began_way_m,
+                )
             })
         };
         let takes = match plan {
-            Plan::Back { actions, .. } => self.trail.there_and_back(*actions, self.cell),
+            Plan::Back { actions, .. } => self.trail.there_and_back(*actions, self.driven.cell()),
             Plan::InPlace { .. } => since(actions.last()),
             Plan::Restart => since(actions.first()),
         };
         let (takes_s, way_m) = takes.unwrap_or_default();
-        if self.cell.now_s() - incident.began_s + takes_s > time_s {
+        if self.driven.cell().now_s() - incident.began_s + takes_s > time_s {
             Err(GiveUp::Time(time_s))
-        } else if self.cell.way_m() - incident.began_way_m + way_m > distance_m {
+        } else if self.driven.cell().way_m() - incident.began_way_m + way_m > distance_m {
             Err(GiveUp::Distance(distance_m))
         } else {
             Ok(())
@@ -485,10 +498,10 @@ impl<'p, C: Workcell> Run<'_, 'p, '_, C> {
     }
 
     fn give_up(&mut self, index: usize, why: GiveUp) -> Option<Ending> {
-        self.machine.alter(None);
+        self.driven.alter(None);
         let incident = self.open.remove(index);
         let Incident { error, pc, entry, number, .. } = incident;
-        let depth = self.machine.state().frames().len();
+        let depth = self.driven.machine().state().frames().len();
         self.given_up.push(GivenUp { error, pc, entry, number, depth });
         // Where the program asks for nothing, there is nothing to tell.
         let is_asked = why != GiveUp::NoRecovery;
@@ -501,20 +514,20 @@ impl<'p, C: Workcell> Run<'_, 'p, '_, C> {
         }
         self.close(incident, Outcome::GivenUp(why));
         // Where it is due, the code behind it is what follows; elsewhere there is none.
-        let is_due = self.machine.state().raised().contains(&error);
-        let goes_on = follows && is_due && self.machine.state().pc() == pc + 1;
+        let is_due = self.driven.machine().state().raised().contains(&error);
+        let goes_on = follows && is_due && self.driven.machine().state().pc() == pc + 1;
         if goes_on { None } else { Some(Ending::GivenUp { error, pc, why }) }
     }
 
     /// The errors that the run has got past are open no more.
     fn close_passed(&mut self) {
-        let is_cleaning_up = self.machine.is_cleaning_up();
+        let is_cleaning_up = self.driven.machine().is_cleaning_up();
         while let Some(incident) = self.open.last() {
             let is_over = is_cleaning_up && !incident.is_in_cleanup;
             if !is_over && !incident.is_past(&self.trail) {
                 return;
             }
-            self.machine.alter(None);
+            self.driven.alter(None);
             let is_lost = is_over && self.is_stopping;
             let outcome = if is_lost { Outcome::Lost } else { Outcome::Recovered };
             if let Some(incident) = self.open.pop() {
@@ -532,7 +545,7 @@ impl<'p, C: Workcell> Run<'_, 'p, '_, C> {
     }
 
     fn close(&mut self, mut incident: Incident, outcome: Outcome) {
-        incident.outcome = Some((outcome, self.cell.now_s()));
+        incident.outcome = Some((outcome, self.driven.cell().now_s()));
         if outcome == Outcome::Recovered {
             self.say(&Step::Recovered { incident: &incident });
         }

@@ -67,7 +67,7 @@ pub enum Noted {
 }
 
 /// The newest notes of a run, oldest first.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct Notes {
     kept: VecDeque<Note>,
     dropped: u64,

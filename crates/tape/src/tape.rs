@@ -1,7 +1,7 @@
 //! The tape: its streams, positions on it, the barrier, and how much it has recorded.
 
-use crate::file::Snapshot;
 use crate::note::{Note, Notes};
+use crate::snapshot::Snapshot;
 use crate::stream::{BitStream, CHUNK, Stream};
 use obverse_geometry::JointConfiguration;
 
@@ -342,7 +342,7 @@ impl Tape {
 }
 
 /// The records of a tape as plain data, oldest first.
-#[derive(Clone, Debug, PartialEq, Default, serde::Serialize, serde::Deserialize)]
+#[derive(Clone, Debug, PartialEq, Default)]
 pub struct Streams {
     /// Recorded joins and output levels.
     pub bits: Vec<bool>,

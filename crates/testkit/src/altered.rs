@@ -6,10 +6,10 @@ use crate::code::{self, Options};
 use arbitrary::{Result, Unstructured};
 use obverse_bytecode::{
     Constant, Continuation, Function, Item, Mention, Mentioned, Module, Otherwise, Recovery,
-    Respond, SourceEntry, Verified, encode, fingerprint, verify,
+    Respond, SourceEntry, Verified, verify,
 };
 use obverse_isa::{Instr, Type};
-use obverse_tape::{ForkSnapshot, FrameSnapshot, Snapshot, Streams, TapeFile};
+use obverse_tape::{ForkSnapshot, FrameSnapshot, Snapshot, Streams};
 use obverse_vm::{Direction, Machine};
 
 /// The most alterations of one thing.
@@ -152,14 +152,25 @@ fn alter_map(u: &mut Unstructured<'_>, module: &mut Module) -> Result<()> {
     Ok(())
 }
 
-/// The recording of a generated program, which stopped anywhere, with alterations.
+/// A program, a state of it as plain data, and a tape.
+#[derive(Debug)]
+pub struct Recorded {
+    /// The program.
+    pub module: Module,
+    /// The state.
+    pub state: Snapshot,
+    /// The tape.
+    pub streams: Streams,
+}
+
+/// The state and the tape of a generated program, which stopped anywhere, with alterations.
 ///
 /// # Errors
 /// Those of the randomness.
 ///
 /// # Panics
-/// If the generator makes a module that does not verify, encode or link.
-pub fn recording(u: &mut Unstructured<'_>) -> Result<TapeFile> {
+/// If the generator makes a module that does not verify or link.
+pub fn recording(u: &mut Unstructured<'_>) -> Result<Recorded> {
     let alterations = u.int_in_range(1..=ALTERATIONS)?;
     let choices: Vec<(u8, [u8; 12])> =
         (0..alterations).map(|_| u.arbitrary()).collect::<Result<_>>()?;
@@ -168,7 +179,6 @@ pub fn recording(u: &mut Unstructured<'_>) -> Result<TapeFile> {
     let Ok(program) = verify(code::module(u, Options { never, blocks: true })?) else {
         panic!("the generator made a module that does not verify");
     };
-    let Ok(module) = encode(program.module()) else { panic!("a module is too large") };
     let (mut state, mut streams) = recorded(&program, steps);
     for (choice, random) in choices {
         let u = &mut Unstructured::new(&random);
@@ -180,8 +190,7 @@ pub fn recording(u: &mut Unstructured<'_>) -> Result<TapeFile> {
             _ => alter_streams(u, &mut streams)?,
         }
     }
-    let fingerprint = fingerprint(&module);
-    Ok(TapeFile { module, fingerprint, seed: 1, ending: "stopped".to_owned(), state, streams })
+    Ok(Recorded { module: program.module().clone(), state, streams })
 }
 
 /// The state and the tape after so many steps.

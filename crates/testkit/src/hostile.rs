@@ -5,14 +5,15 @@
 //! how valid things are altered is for [`crate::altered`] to know.
 
 use crate::Ledger;
-use crate::altered;
+use crate::altered::{self, Recorded};
 use arbitrary::Unstructured;
 use obverse_bytecode::codec::{self, MODULE};
 use obverse_bytecode::{Module, Verified, assemble, decode, disassemble, encode, verify};
 use obverse_compiler::compile;
+use obverse_debugger::file::{TAPE, TapeFile};
+use obverse_debugger::{Grain, Moment, Run, Session, Walk};
 use obverse_sim::Cell;
-use obverse_tape::file::TAPE;
-use obverse_tape::{Snapshot, Streams, TapeFile};
+use obverse_tape::{Snapshot, Streams};
 use obverse_vm::{Direction, Limits, Machine, Stop};
 use serde::ser::{Serialize, SerializeTuple, Serializer};
 
@@ -41,13 +42,38 @@ pub fn module_bytes(bytes: &[u8]) -> bool {
     payload.is_ok_and(there_and_back) || whole
 }
 
-/// A tape file's bytes, and bytes as the payload of a tape file: read, made a machine, walked.
-/// Whether one of them was walked.
+/// A tape file's bytes, and bytes as the parts of a tape file, each behind its length in two bytes:
+/// read, and opened in the debugger. Whether one of them was.
 pub fn tape_bytes(bytes: &[u8]) -> bool {
-    let whole = TapeFile::from_bytes(bytes).is_ok_and(walked);
-    let sealed = codec::seal(TAPE, &Payload(bytes));
-    let payload = sealed.and_then(|bytes| TapeFile::from_bytes(&bytes));
-    payload.is_ok_and(walked) || whole
+    let whole = TapeFile::from_bytes(bytes).is_ok_and(opened);
+    let mut parts = Vec::new();
+    let mut rest = bytes;
+    while let Some((length, after)) = rest.split_first_chunk::<2>() {
+        let length = usize::from(u16::from_le_bytes(*length)).min(after.len());
+        let (part, after) = after.split_at(length);
+        parts.extend(codec::seal(TAPE, &Payload(part)).unwrap_or_default());
+        rest = after;
+    }
+    TapeFile::from_bytes(&parts).is_ok_and(opened) || whole
+}
+
+/// Everything that a debugger does with a recording, for so long.
+fn opened(file: TapeFile) -> bool {
+    let Ok(program) = verify(file.module) else { return false };
+    let mut recording = file.recording;
+    recording.end = recording.end.min(Moment(STEPS));
+    let Ok(run) = Run::of_recording(&program, recording) else { return false };
+    let _data = run.as_data();
+    let mut session = Session::over(run.simulated(Some(Ledger::new(1))));
+    let half = Moment(session.moment().0 / 2);
+    let _shown = (session.history(), session.why(), session.digest());
+    session.go(Direction::Reverse, Walk::Next(Grain::Statement));
+    if session.go_to(half).is_ok() && session.what_if().is_ok() {
+        session.limit(STEPS);
+        session.go(Direction::Forward, Walk::Continue);
+        session.go(Direction::Reverse, Walk::Continue);
+    }
+    true
 }
 
 /// The text of a module, or whatever the bytes are of it. Whether it was run.
@@ -81,11 +107,9 @@ pub fn altered_module(bytes: &[u8]) -> bool {
     bytes.is_some_and(|bytes| module_bytes(&bytes))
 }
 
-/// A valid recording, altered as the bytes say. Whether it still is one and was walked.
+/// A valid state with its tape, altered as the bytes say. Whether it still is one and was walked.
 pub fn altered_recording(bytes: &[u8]) -> bool {
-    let file = altered::recording(&mut Unstructured::new(bytes));
-    let bytes = file.ok().and_then(|file| file.to_bytes().ok());
-    bytes.is_some_and(|bytes| tape_bytes(&bytes))
+    altered::recording(&mut Unstructured::new(bytes)).is_ok_and(walked)
 }
 
 fn there_and_back(module: Module) -> bool {
@@ -111,8 +135,8 @@ fn run(program: &Verified) -> bool {
     true
 }
 
-fn walked((file, module): (TapeFile, Module)) -> bool {
-    let Ok(program) = verify(module) else { return false };
+fn walked(file: Recorded) -> bool {
+    let Ok(program) = verify(file.module) else { return false };
     let is_one = unwound(&program, &file.state, &file.streams);
     let mut cell = Ledger::new(1);
     if let Ok(mut machine) = Machine::from_recording(&program, &file.state, &file.streams, &cell) {

@@ -27,6 +27,7 @@ pub mod reach_programs;
 pub mod recovery_laws;
 pub mod reference;
 pub mod symbol_laws;
+pub mod tape_laws;
 pub mod wait_laws;
 pub mod word_laws;
 

@@ -230,7 +230,7 @@ pub fn recovers_within_bounds(u: &mut Unstructured<'_>) -> Result<bool> {
 }
 
 /// The same program with every error recovered from by reversing.
-fn all_reversing(source: &str) -> String {
+pub(crate) fn all_reversing(source: &str) -> String {
     const CLAUSES: &str = "  recover by reversing escalating up to 3 actions, slower\n";
     let mut lines = Vec::new();
     let mut is_error = false;
@@ -246,7 +246,7 @@ fn all_reversing(source: &str) -> String {
     lines.join("\n")
 }
 
-fn program(source: &str, change: impl FnOnce(&mut Module)) -> Verified {
+pub(crate) fn program(source: &str, change: impl FnOnce(&mut Module)) -> Verified {
     let compiled = compile("program.obv", source);
     let Some(mut module) = compiled.module else {
         panic!("it does not compile: {:#?}\n{source}", compiled.diagnostics)
@@ -258,7 +258,7 @@ fn program(source: &str, change: impl FnOnce(&mut Module)) -> Verified {
     }
 }
 
-struct Releases(u32);
+pub(crate) struct Releases(pub(crate) u32);
 
 impl Operator for Releases {
     fn release(&mut self, _: &Fault) -> bool {

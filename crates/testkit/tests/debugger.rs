@@ -327,3 +327,38 @@ fn live_reverse_walks_as_forward_does_the_other_way() {
     assert_eq!(line(&session), 12);
     assert_eq!(session.mode(), Mode::Live);
 }
+
+/// A disk that is full.
+struct Full(usize);
+
+impl std::io::Write for Full {
+    fn write(&mut self, bytes: &[u8]) -> std::io::Result<usize> {
+        self.0 = self.0.checked_sub(bytes.len()).ok_or(std::io::ErrorKind::StorageFull)?;
+        Ok(bytes.len())
+    }
+
+    fn flush(&mut self) -> std::io::Result<()> {
+        Ok(())
+    }
+}
+
+#[test]
+fn a_run_whose_tape_cannot_be_written_runs_all_the_same_and_says_so_in_the_end() {
+    use obverse_debugger::{Taped, Writer, taped};
+    use obverse_recovery::Driven;
+    let program = program();
+    let recorded = |file: &mut dyn std::io::Write| {
+        let mut cell = Ledger::new(1);
+        let mut machine = obverse_vm::Machine::new(&program, &cell).expect("it links");
+        let names = ("p.obv".to_owned(), None);
+        let head = taped::head(program.module(), &cell, names, 1).expect("it is no larger");
+        let mut taped = Taped::new(&mut machine, &mut cell, Writer::begin(file, head));
+        while taped.run(Forward, u64::MAX, &mut ()) != Stop::Finished {}
+        taped.end("finished").map_err(|error| error.kind())
+    };
+    let mut whole = Vec::new();
+    assert_eq!(recorded(&mut whole), Ok(()));
+    for room in [0, whole.len() / 2, whole.len() - 1] {
+        assert_eq!(recorded(&mut Full(room)), Err(std::io::ErrorKind::StorageFull), "{room}");
+    }
+}

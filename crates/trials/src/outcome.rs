@@ -34,6 +34,10 @@ pub struct Incident {
     pub depths: Vec<u32>,
     /// Whether the program went on past that place afterwards.
     pub recovered: bool,
+    /// Whether that was by what the program does where going back has been given up: no depth of
+    /// going back was enough then.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub otherwise: bool,
     /// What is learned of it: how far the attempts went back of which it is known what came of
     /// them, and whether the last was enough. Learning comes before the campaign, and so no file
     /// holds it.

@@ -70,6 +70,12 @@ impl Mark {
     pub fn at(steps: u64) -> Self {
         Self { steps }
     }
+
+    /// How many steps that is from the start of the program.
+    #[must_use]
+    pub fn steps(self) -> u64 {
+        self.steps
+    }
 }
 
 macro_rules! values {
@@ -246,12 +252,14 @@ impl<'p> Machine<'p> {
             return self.count_step(Self::operand_back);
         }
         let compensations = self.state.compensations.len();
+        // What was left for the cleanup stands where it was left.
+        let comes_back = self.came_from_leaving() == Some(self.state.steps());
         self.count_step(|machine| {
             machine.statement_back(host)?;
             // Into what replaces a reversal it goes forward, and out of it the machine stands where
             // it entered, behind its block.
             let is_same = machine.state.compensations.len() == compensations;
-            if is_same { machine.show_operands() } else { Ok(()) }
+            if is_same && !comes_back { machine.show_operands() } else { Ok(()) }
         })
     }
 

@@ -83,7 +83,8 @@ impl Machine<'_> {
         observer: &mut dyn Observer,
     ) -> Option<Stop> {
         let allowed = self.executed.saturating_add(limits.instructions);
-        let mut is_begun = false;
+        // A statement that traps leads back to its beginning: not to before where this began.
+        let mut is_begun = !stops.has(self.state.pc());
         loop {
             if self.executed >= allowed {
                 return Some(Stop::Budget);

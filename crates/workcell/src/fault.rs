@@ -3,10 +3,11 @@
 //! A fault is data with the numbers a person needs; what follows from it is decided elsewhere.
 
 use crate::watch::Watch;
+use serde::{Deserialize, Serialize};
 use std::fmt;
 
 /// Why the workcell did not do as commanded.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub enum Fault {
     /// A goal, or the way to it, leaves the range of a joint (numbered from 1).
     JointLimit {

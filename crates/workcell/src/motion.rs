@@ -3,9 +3,10 @@
 //! Knows nothing of how an arm carries one out.
 
 use obverse_geometry::{Axis, Frame, JointConfiguration, Pose};
+use serde::{Deserialize, Serialize};
 
 /// One motion of the arm.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Motion {
     /// Where the motion ends unless its guard stops it.
     pub goal: Goal,
@@ -20,7 +21,7 @@ pub struct Motion {
 }
 
 /// Where a motion ends. All are absolute: commanding one twice ends in the same place.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub enum Goal {
     /// Exactly these joint values, bit for bit, however they are reached.
     Joints(JointConfiguration),
@@ -67,7 +68,7 @@ pub enum Goal {
 }
 
 /// The way of a motion.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Path {
     /// All joints in proportion: straight in joint space.
     Joint,
@@ -76,7 +77,7 @@ pub enum Path {
 }
 
 /// A named speed, which the workcell file gives a number. Restored by identity, never by value.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 pub enum Speed {
     /// The slowest.
     VerySlow,
@@ -97,15 +98,15 @@ impl Speed {
 }
 
 /// A tool of the workcell, by its place in the workcell's list.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct ToolId(pub u16);
 
 /// An item of the workcell, by its place in the workcell's list.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct ItemId(pub u16);
 
 /// What came of a motion that was carried out.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct MotionReport {
     /// How it ended.
     pub end: MotionEnd,
@@ -119,7 +120,7 @@ pub struct MotionReport {
 }
 
 /// How a motion ended.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum MotionEnd {
     /// At its goal.
     Reached,

@@ -2,10 +2,11 @@
 //!
 //! Knows nothing of why somebody wants to know.
 
+use serde::{Deserialize, Serialize};
 use std::fmt;
 
 /// Something that may come to hold while an act is under way.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub enum Condition {
     /// An input has a level.
     Input {
@@ -32,7 +33,7 @@ impl fmt::Display for Condition {
 }
 
 /// A condition that is watched.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Watch {
     /// Who it is watched for: a number that its fault says again.
     pub number: u16,

@@ -1,4 +1,4 @@
-//! The bytes of a recording: read, made a machine, walked back and forth.
+//! The bytes of a tape file, or of its parts: read, and opened in the debugger.
 #![no_main]
 
 libfuzzer_sys::fuzz_target!(|bytes: &[u8]| {

@@ -12,11 +12,11 @@ mod value;
 mod walk;
 
 use super::Result;
-use crate::problem::{Message, Problem};
-use crate::{Outcome, load};
+use crate::problem::Problem;
+use crate::{Outcome, taping};
 use cost::Costs;
-use obverse_bytecode::{Module, verify};
-use obverse_tape::TapeFile;
+use obverse_bytecode::{Module, fingerprint};
+use obverse_tape::{Snapshot, Streams};
 use std::path::PathBuf;
 use walk::Walk;
 
@@ -35,19 +35,29 @@ pub(crate) struct Arguments {
 /// What there is to show.
 struct Shown<'a> {
     module: &'a Module,
-    file: &'a TapeFile,
+    file: &'a Recorded,
     walk: &'a Walk,
     costs: &'a Costs,
 }
 
+/// What a tape file leads to: the end of its run.
+struct Recorded {
+    fingerprint: u64,
+    seed: u64,
+    ending: String,
+    state: Snapshot,
+    streams: Streams,
+}
+
 pub(crate) fn run(arguments: &Arguments) -> Result {
     let path = &arguments.file;
-    let (file, module) =
-        TapeFile::from_bytes(&load::bytes(path)?).map_err(|error| Problem::of_file(path, error))?;
-    let program = verify(module).map_err(|errors| {
-        Problem::several(errors.iter().map(|error| Message::of_file(path, error)).collect())
-    })?;
-    let walk = walk::back(&program, &file).map_err(|error| Problem::of_file(path, error))?;
+    let opened = taping::open(path)?;
+    let (state, streams) = opened.run()?.as_data();
+    let head = &opened.file.head;
+    let (fingerprint, seed, ending) = (fingerprint(&head.module), head.seed, opened.ending());
+    let file = Recorded { fingerprint, seed, ending, state, streams };
+    let program = &opened.program.verified;
+    let walk = walk::back(program, &file).map_err(|error| Problem::of_file(path, error))?;
     let module = program.module();
     let costs = Costs::of(module, &walk);
     let shown = Shown { module, file: &file, walk: &walk, costs: &costs };

@@ -4,13 +4,13 @@
 //! machine is walked back over it, with a workcell that moves nothing. What the file says is not
 //! believed: a walk has an end, whatever the tape.
 
-use super::value;
+use super::{Recorded, value};
 use crate::report;
 use obverse_bytecode::{Module, Verified};
 use obverse_geometry::JointConfiguration;
 use obverse_isa::Instr;
 use obverse_recovery::Ending;
-use obverse_tape::{Place, Tape, TapeFile};
+use obverse_tape::{Place, Tape};
 use obverse_vm::{Direction, Machine, Refusal, Stop};
 use obverse_workcell::Shadow;
 
@@ -85,7 +85,7 @@ impl End {
 }
 
 /// Walk back over the tape of a file.
-pub(super) fn back(program: &Verified, file: &TapeFile) -> Result<Walk, String> {
+pub(super) fn back(program: &Verified, file: &Recorded) -> Result<Walk, String> {
     let state = &file.state;
     let mut cell = Shadow::new(JointConfiguration(state.joints), state.outputs.clone());
     let mut machine = Machine::from_recording(program, state, &file.streams, &cell)

@@ -52,6 +52,7 @@ impl Stand for ToyStand<'_> {
             place: "toy.obv:7".to_owned(),
             depths: tried.clone(),
             recovered,
+            otherwise: false,
             lesson: None,
             cause: Some(format!("cause {needed}")),
         };
