@@ -103,7 +103,7 @@ fn a_dry_run_tells_where_the_time_goes() {
     let ran = bench.ends(0, &["run", "--dry", "tower.obv"]);
     assert!(ran.stdout.contains("finished; a cycle takes "), "{}", ran.stdout);
     let begins = |line: &str| ran.stdout.lines().any(|row| row.starts_with(line));
-    assert!(begins("    39  main  ") && begins("    27  pick  "), "{}", ran.stdout);
+    assert!(begins("    34  main  ") && begins("    27  pick  "), "{}", ran.stdout);
     assert!(ran.stdout.contains("what a dry run does not show:"), "{}", ran.stdout);
     assert!(ran.stdout.lines().all(|line| line.chars().count() <= 120), "{}", ran.stdout);
     assert_eq!(ran.stdout, bench.ends(0, &["run", "--dry", "tower.obv"]).stdout);

@@ -3,8 +3,8 @@
 use obverse_bytecode::{Module, assemble, verify};
 use obverse_geometry::Pose;
 use obverse_preflight::{Graded, MoveReport, Reason, Report, check};
-use obverse_sim::Cell;
 use obverse_sim::cell::{FixtureSpec, OffsetSpec, Part, Shape};
+use obverse_sim::{Cell, Plan};
 
 /// A part to take and a spot beside it; the arm points down over them.
 pub(crate) const CELL: &str = r#"
@@ -102,7 +102,7 @@ impl Found {
 
     fn of_module(cell: &Cell, module: Module) -> Self {
         let program = verify(module).expect("a module that verifies");
-        let report = check(&program, cell).expect("a cell with all that is needed");
+        let report = check(&program, Plan::new(cell)).expect("a cell with all that is needed");
         let line =
             |found: &MoveReport| program.module().place_of(found.pc).map_or(0, |place| place.1);
         let lines = report.moves.iter().map(line).collect();
