@@ -50,32 +50,32 @@ Exit codes:
 enum Command {
     /// Check a program, and every move of it in its workcell, before anything moves.
     Check(commands::check::Arguments),
+    /// Show how far back each line of a program can go, and what stops it.
+    Reach(commands::reach::Arguments),
+    /// Run a program on the simulated workcell and tell what happens.
+    Run(commands::run::RunArguments),
+    /// Run a program, then take it back as far as it goes.
+    Back(commands::back::Arguments),
+    /// Walk through a run in both directions, and try what would have been.
+    Debug(commands::debug::Arguments),
+    /// Show what is on a recorded tape.
+    Tape(commands::tape::Arguments),
+    /// Try a program over many seeded assemblies, by one strategy or several.
+    Trials(commands::trials::Arguments),
+    /// Learn the parameters of an action in simulation.
+    Learn(commands::learn::Arguments),
     /// Bring source files into their canonical layout.
     Fmt(commands::fmt::Arguments),
     /// Print the inverse of a sequence: a disassembly program from an assembly program.
     Invert(commands::invert::Arguments),
     /// Compile a program to a module.
     Build(commands::build::Arguments),
-    /// Run a program on the simulated workcell and tell what happens.
-    Run(commands::run::RunArguments),
-    /// Run a program, then take it back as far as it goes.
-    Back(commands::back::Arguments),
-    /// Debug a program from an editor, in both directions, by the Debug Adapter Protocol.
-    Dap(commands::dap::Arguments),
-    /// Show how far back each line of a program can go, and what stops it.
-    Reach(commands::reach::Arguments),
-    /// Walk through a run in both directions, and try what would have been.
-    Debug(commands::debug::Arguments),
     /// Show the instructions of a program, with the class of each.
     Dis(commands::dis::Arguments),
-    /// Try a program over many seeded assemblies, by one strategy or several.
-    Trials(commands::trials::Arguments),
-    /// Learn the parameters of an action in simulation.
-    Learn(commands::learn::Arguments),
     /// Serve an editor: the language server on standard input and output.
     Lsp(commands::lsp::Arguments),
-    /// Show what is on a recorded tape.
-    Tape(commands::tape::Arguments),
+    /// Debug a program from an editor, in both directions, by the Debug Adapter Protocol.
+    Dap(commands::dap::Arguments),
     /// Show the instruction set.
     Isa(commands::isa::Arguments),
     /// Explain an opcode, the code of a diagnostic, or that of a check of moves.

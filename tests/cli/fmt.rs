@@ -126,7 +126,7 @@ fn a_mistake_of_any_kind_leaves_a_file_alone_and_a_part_of_a_program_is_formatte
 fn a_line_of_many_statements_becomes_many_lines() {
     let bench = Bench::new("fmt_long_line");
     let statements = "x += 1; ".repeat(30_000);
-    bench.write("long.obv", &format!("sequence main {{ var x = 0 {statements}}}\n"));
+    bench.write("long.obv", format!("sequence main {{ var x = 0 {statements}}}\n"));
     let ran = bench.ends(0, &["fmt", "long.obv"]);
     assert_eq!(ran.stdout, "long.obv: formatted\n", "{}", ran.stderr);
     assert!(String::from_utf8_lossy(&bench.read("long.obv")).lines().count() > 29_900);
