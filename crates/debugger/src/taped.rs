@@ -1,8 +1,8 @@
 //! A run that is written to a tape file as it goes.
 //!
 //! It keeps nothing of what has been written, so that a run may take as long as it likes. What was
-//! commanded is written as soon as the workcell's clock has gone on by a tenth of a second, or where
-//! it is a few dozen commands: a run that is killed loses no more, and the act that it was in.
+//! commanded is written as soon as the workcell's clock has gone on by a tenth of a second, or
+//! where it is a few dozen commands: a run that is killed loses no more, and the act it was in.
 
 use crate::drive::{Driven, Pace, drive};
 use crate::file::{Head, Piece, Writer};
