@@ -7,14 +7,21 @@ set -eu
 here=$(cd "$(dirname "$0")" && pwd)
 root=$(cd "$here/../.." && pwd)
 target=${CARGO_TARGET_DIR:-$root/target}
-mkdir -p "$target/tmp/dap"
-venv=$target/tmp/dap-venv
+# Where cargo lets tests write: the sessions that are held against the schema are there.
+scratch=$target/tmp
+messages=$scratch/dap
+mkdir -p "$messages"
+venv=$scratch/dap-venv
 if [ ! -x "$venv/bin/python" ]; then
   python3 -m venv "$venv"
   "$venv/bin/pip" -q install debugpy jsonschema
 fi
-client=$target/tmp/dap-client
+client=$scratch/dap-client
 mkdir -p "$client"
 cp "$here"/client/* "$here"/client/.npmrc "$client"
-(cd "$client" && npm install --silent --no-fund --no-audit && node client.js "$target/debug/obverse" "$root/programs" "$target/tmp/dap/outside.jsonl")
-"$venv/bin/python" "$here/schema.py" "$target/tmp/dap"
+(
+  cd "$client"
+  npm install --silent --no-fund --no-audit
+  node client.js "$target/debug/obverse" "$root/programs" "$messages/outside.jsonl"
+)
+"$venv/bin/python" "$here/schema.py" "$messages"

@@ -3,7 +3,8 @@
 
 use crate::position::Lines;
 use obverse_bytecode::{Module, SourceEntry};
-use obverse_isa::{Family, Instr};
+use obverse_isa::Instr;
+use obverse_reach::statement::{does_something, point};
 use obverse_reach::{Horizon, Reach, Standing, Verdict};
 use obverse_syntax::sources::Sources;
 use obverse_syntax::span::Span;
@@ -255,30 +256,6 @@ fn range_of(module: &Module, index: usize) -> Option<(u32, u32)> {
     let next = module.source_map.get(index + 1).map_or(u32::MAX, |next| next.first);
     let end = next.min(module.functions[function].end);
     (first < end).then_some((first, end))
-}
-
-/// The first instruction from which a statement is gone back from as a whole: behind its joins,
-/// where the ways to it have met.
-fn point(module: &Module, first: u32, end: u32) -> u32 {
-    let mut point = first;
-    for pc in first..end {
-        let instr = &module.code[pc as usize];
-        if instr.join_from().is_some() {
-            point = pc + 1;
-        } else if !instr.info().family.is_pure() {
-            break;
-        }
-    }
-    point.min(end - 1)
-}
-
-/// Whether an instruction is worth a class.
-fn does_something(instr: &Instr) -> bool {
-    match instr.info().family {
-        Family::Value | Family::Flow => false,
-        Family::Frame => matches!(instr, Instr::Call { .. }),
-        _ => true,
-    }
 }
 
 /// Blocks that cannot be taken back: both of their ends are written in their head.

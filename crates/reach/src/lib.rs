@@ -15,8 +15,9 @@
 //! [`MAX_KEPT`] are kept; [`Reach::every`] and [`Reach::way`] ask for all of one point, and for the
 //! reasons, in time linear in the program for each question.
 //!
-//! Read `graph` and `graph/fork`, then `facts`, `sets` and `search`. Knows modules, and neither
-//! sources nor machines; that a run may also end in a fault or a trap is not its subject.
+//! Read `graph` and `graph/fork`, then `facts`, `sets` and `search`; [`statement`] is for those who
+//! show what was found. Knows modules, and neither sources nor machines; that a run may also end in
+//! a fault or a trap is not its subject.
 
 mod asked;
 mod class;
@@ -28,6 +29,7 @@ mod flag;
 mod graph;
 mod search;
 mod sets;
+pub mod statement;
 mod turns;
 
 pub use asked::{Shortfall, ShortfallKind, shortfalls};

@@ -3,7 +3,8 @@
 
 use super::words::Words;
 use obverse_bytecode::{Module, text};
-use obverse_isa::{Family, Instr};
+use obverse_isa::Instr;
+use obverse_reach::statement::{does_something, point};
 use obverse_reach::{Horizon, Reach, Standing, Verdict};
 use std::collections::{BTreeMap, HashMap};
 
@@ -249,30 +250,6 @@ fn line(stretches: &Stretches<'_, '_>, left: &[Horizon], last: u32) -> Option<Li
     let reasons = stretches.words.reasons(stretches.reach, &met);
     let is_certain = behind.iter().all(|horizon| left.contains(horizon));
     (!reasons.is_empty()).then(|| Line { reason: reasons.join(", or "), is_certain })
-}
-
-/// The first instruction from which a statement is gone back from as a whole: behind its joins,
-/// where the ways to it have met.
-fn point(module: &Module, first: u32, end: u32) -> u32 {
-    let mut point = first;
-    for pc in first..end {
-        let instr = &module.code[pc as usize];
-        if instr.join_from().is_some() {
-            point = pc + 1;
-        } else if !instr.info().family.is_pure() {
-            break;
-        }
-    }
-    point.min(end - 1)
-}
-
-/// Whether an instruction is worth a class in the margin.
-fn does_something(instr: &Instr) -> bool {
-    match instr.info().family {
-        Family::Value | Family::Flow => false,
-        Family::Frame => matches!(instr, Instr::Call { .. }),
-        _ => true,
-    }
 }
 
 /// A row an instruction.
