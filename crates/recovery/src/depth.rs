@@ -8,7 +8,6 @@ use crate::memory::{Costs, DEPTH_MAX, Memory};
 use crate::tell::Why;
 use crate::trail::Trail;
 use obverse_bytecode::{Depth, Extent, Reversal};
-use obverse_geometry::JointConfiguration;
 use obverse_isa::CheckpointId;
 
 /// What the next depth depends on.
@@ -19,10 +18,8 @@ pub(crate) struct Question<'q> {
     pub(crate) place: &'q str,
     /// How far each attempt has gone back.
     pub(crate) tried: &'q [usize],
-    /// Seconds of the workcell's clock.
-    pub(crate) now_s: f64,
-    /// Where the arm is.
-    pub(crate) joints: JointConfiguration,
+    /// What going back so many actions and coming again is expected to take, in seconds.
+    pub(crate) costs_s: &'q dyn Fn(usize) -> f64,
     /// What a person takes, in seconds.
     pub(crate) give_up_s: f64,
     /// How many attempts there may still be.
@@ -105,22 +102,12 @@ impl Question<'_> {
 
     fn learned(&self, furthest: usize, memory: &mut Memory) -> Result<(usize, Why), GiveUp> {
         let costs_s: Vec<f64> =
-            (1..=furthest.min(DEPTH_MAX)).map(|depth| self.cost_s(depth)).collect();
+            (1..=furthest.min(DEPTH_MAX)).map(self.costs_s).collect();
         let (give_up_s, attempts_left) = (self.give_up_s, self.attempts_left);
         let costs = Costs { by_depth_s: &costs_s, give_up_s, attempts_left };
         let choice = memory.choose(self.error, self.place, self.tried, costs);
         let actions = choice.actions.ok_or(GiveUp::WouldNotHelp)?;
         let (chance, expected_s, known) = (choice.chance, choice.expected_s, choice.known);
         Ok((actions, Why::Learned { chance, expected_s, known }))
-    }
-
-    /// What going back so many actions and coming again is expected to take, in seconds: twice as
-    /// long as they took, but for motions that ended where they began.
-    fn cost_s(&self, depth: usize) -> f64 {
-        let actions = self.trail.actions();
-        let to = &actions[actions.len() - depth];
-        let all_s = (self.now_s - to.began_s).max(0.0);
-        let passed = self.trail.round_trip(to.steps, &self.joints);
-        all_s + passed.map_or(all_s, |motion| (motion.began_s - to.began_s).max(0.0))
     }
 }

@@ -30,6 +30,7 @@ pub mod foresight;
 pub mod incident;
 pub mod memory;
 mod noted;
+mod passage;
 mod place;
 pub mod recover;
 pub mod strategy;

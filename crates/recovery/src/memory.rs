@@ -106,6 +106,15 @@ impl Memory {
         known.times.iter().map(|(kind, times)| in_kind(kind) as f64 * *times as f64).sum()
     }
 
+    /// How many attempts of a depth are known that others had gone before in vain.
+    fn tried_later(&self, error: &str, place: &str, depth: usize) -> f64 {
+        let Some(known) = self.places.get(&(error.to_owned(), place.to_owned())) else {
+            return 0.0;
+        };
+        let in_kind = |kind: &Kind| kind.depths.iter().skip(1).filter(|&&d| d == depth).count();
+        known.times.iter().map(|(kind, times)| in_kind(kind) as f64 * *times as f64).sum()
+    }
+
     /// How many of them were not recovered from, although an attempt went back so far: who gives up
     /// before has not learned that going on would have been in vain.
     fn in_vain(&self, error: &str, place: &str, furthest: usize) -> u64 {
@@ -149,9 +158,12 @@ impl Memory {
         for &depth in tried {
             belief.fail(depth);
         }
-        let slack = |depth: usize| match tried {
-            [] => 1.0 + CURIOSITY * FEW / (FEW + self.tried(error, place, depth)),
-            _ => 1.0,
+        let slack = |depth: usize| {
+            let known = match tried {
+                [] => self.tried(error, place, depth),
+                _ => self.tried_later(error, place, depth),
+            };
+            1.0 + CURIOSITY * FEW / (FEW + known)
         };
         let best = belief.best(costs, slack);
         let furthest = costs.by_depth_s.len().min(DEPTH_MAX);

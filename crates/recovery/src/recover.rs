@@ -10,11 +10,14 @@ use crate::fault;
 use crate::incident::{Attempt, Incident, Outcome};
 use crate::memory::Memory;
 use crate::noted;
+use crate::passage::Passage;
 use crate::place::place;
 use crate::strategy::{Bounds, Strategy};
 use crate::tell::{Operator, Step, Teller, Why};
 use crate::trail::{Action, Trail};
-use obverse_bytecode::{Depth, ErrorDeclaration, Module, Otherwise, Reversal};
+use obverse_bytecode::{
+    Continuation, Depth, ErrorDeclaration, Module, Otherwise, Reversal,
+};
 use obverse_isa::ErrorId;
 use obverse_vm::{Alteration, Direction, Event, Limits, Machine, Observer, Stop};
 use obverse_workcell::{Fault, Workcell};
@@ -151,16 +154,14 @@ pub(crate) struct Run<'r, 'p, 'o, C> {
     amiss: Option<Ending>,
 }
 
-/// An error that was given up where it was due. What the program does about it then is counted in
-/// its own variables, which going back would restore, and is not to be taken back with them: so
-/// there is no going back for it until it is past.
+/// An error that was given up where it was due. There is no going back for it until it is past,
+/// wherever the program goes on.
 struct GivenUp {
     error: ErrorId,
     pc: u32,
     entry: u32,
-    number: u64,
-    /// How many calls were under way where it was due.
-    depth: usize,
+    /// What the trail knows by that the run has not got past it.
+    passage: u64,
 }
 
 /// Tells events on, and notes them on the trail.
@@ -391,8 +392,10 @@ impl<'p, C: Workcell> Run<'_, 'p, '_, C> {
             error: &self.declared(incident).name,
             place: &incident.place,
             tried: &incident.depths(),
-            now_s: self.driven.cell().now_s(),
-            joints: self.driven.cell().joints(),
+            costs_s: &|depth| {
+                let takes = self.trail.there_and_back(depth, self.driven.cell());
+                takes.unwrap_or_default().0
+            },
             give_up_s: self.recovery.person_s,
             attempts_left: self.attempts_left(incident),
         };
@@ -422,7 +425,7 @@ impl<'p, C: Workcell> Run<'_, 'p, '_, C> {
 
     fn check_progress(&mut self, index: usize) -> Result<(), GiveUp> {
         let trail = &self.trail;
-        self.given_up.retain(|old| !trail.is_past(old.number, old.entry, old.depth));
+        self.given_up.retain(|old| trail.is_awaited(old.passage));
         let incident = &self.open[index];
         if self.given_up.iter().any(|old| incident.is_again(old.error, old.pc, old.entry)) {
             return Err(GiveUp::Before);
@@ -500,9 +503,8 @@ impl<'p, C: Workcell> Run<'_, 'p, '_, C> {
     fn give_up(&mut self, index: usize, why: GiveUp) -> Option<Ending> {
         self.driven.alter(None);
         let incident = self.open.remove(index);
-        let Incident { error, pc, entry, number, .. } = incident;
-        let depth = self.driven.machine().state().frames().len();
-        self.given_up.push(GivenUp { error, pc, entry, number, depth });
+        let Incident { error, pc, .. } = incident;
+        self.await_passage(&incident);
         // Where the program asks for nothing, there is nothing to tell.
         let is_asked = why != GiveUp::NoRecovery;
         let follows = self.recovery.strategy.goes_on_when_given_up() || !is_asked;
@@ -517,6 +519,23 @@ impl<'p, C: Workcell> Run<'_, 'p, '_, C> {
         let is_due = self.driven.machine().state().raised().contains(&error);
         let goes_on = follows && is_due && self.driven.machine().state().pc() == pc + 1;
         if goes_on { None } else { Some(Ending::GivenUp { error, pc, why }) }
+    }
+
+    /// There is no going back for an error that was given up until the run is past it. Nor is there
+    /// for any other over what the program does about it then, where going back was tried before or
+    /// the program begins something anew: that is counted in variables of the program, which going
+    /// back would restore.
+    fn await_passage(&mut self, incident: &Incident) {
+        let declared = self.declared(incident);
+        let begins_anew =
+            matches!(declared.continuation, Continuation::Sequence | Continuation::Program);
+        if begins_anew || reversal(declared).is_some() {
+            self.trail.begin_anew();
+        }
+        let depth = self.driven.machine().state().frames().len();
+        let Incident { error, pc, entry, .. } = *incident;
+        let passage = self.trail.await_passage(Passage { entry, depth, is_ahead: begins_anew });
+        self.given_up.push(GivenUp { error, pc, entry, passage });
     }
 
     /// The errors that the run has got past are open no more.

@@ -4,6 +4,7 @@
 //! primitive, or the call of an `action`; sequences are transparent. The trail is kept from what
 //! the machine tells, and begins anew at what cannot be taken back. Knows nothing of errors.
 
+use crate::passage::Passage;
 use obverse_bytecode::{ActionKind, FunctionKind, Module};
 use obverse_geometry::JointConfiguration;
 use obverse_isa::{CheckpointId, Class, Family, FunctionId, Instr};
@@ -33,6 +34,8 @@ pub struct Action {
     pub only_moves: bool,
     /// How far the arm had gone when it began, in metres; further by what has been taken back.
     pub began_way_m: f64,
+    /// How long it only waited, in seconds: that is not waited going back.
+    waited_s: f64,
     /// How many actions of the run lie before it.
     pub number: u64,
     /// Its entry in the source map, by its first instruction.
@@ -68,7 +71,10 @@ impl Action {
         self.motion.map(|(pc, _)| pc)
     }
 
-    fn note_act(&mut self, event: &Event) {
+    fn note_act(&mut self, event: &Event, took_s: f64) {
+        if matches!(event.instr, Instr::Wait { .. } | Instr::WaitInput { .. }) {
+            self.waited_s += took_s;
+        }
         let is_motion = is_motion(event);
         let acts = event.instr.info().family.commands_workcell();
         self.only_moves &= event.open_blocks == 0 && (is_motion || !acts);
@@ -118,6 +124,10 @@ pub struct Trail<'m> {
     /// How many actions of the run are no longer on the trail.
     dropped: u64,
     never: Option<u32>,
+    /// What the run has yet to get past, by the number that it was awaited under.
+    awaited: Vec<(u64, Passage)>,
+    /// How often something was awaited.
+    await_count: u64,
     /// When the last event was, in seconds.
     now_s: f64,
     /// Where the arm was then.
@@ -138,6 +148,8 @@ impl<'m> Trail<'m> {
             motions: VecDeque::new(),
             dropped: 0,
             never: None,
+            awaited: Vec::new(),
+            await_count: 0,
             now_s: 0.0,
             way_m: 0.0,
         }
@@ -168,14 +180,16 @@ impl<'m> Trail<'m> {
         self.dropped + self.actions.len() as u64
     }
 
-    /// Whether the run has begun an action since the one of a number, other than that entry's, in
-    /// no more than so many calls; or has passed what cannot be taken back.
-    #[must_use]
-    pub fn is_past(&self, number: u64, entry: u32, depth: usize) -> bool {
-        let is_on = |action: &Action| {
-            action.number > number && action.entry != entry && action.depth <= depth
-        };
-        self.dropped > number || self.actions.iter().rev().any(is_on)
+    /// From now on, see whether the run gets past a place; the number to ask by.
+    pub(crate) fn await_passage(&mut self, passage: Passage) -> u64 {
+        self.await_count += 1;
+        self.awaited.push((self.await_count, passage));
+        self.await_count
+    }
+
+    /// Whether the run has yet to get past the place of a number.
+    pub(crate) fn is_awaited(&self, number: u64) -> bool {
+        self.awaited.iter().any(|(awaited, _)| *awaited == number)
     }
 
     /// Whether the run has begun an action of these branches since the one of a number and entry.
@@ -191,7 +205,8 @@ impl<'m> Trail<'m> {
     }
 
     /// What it takes to go back so many actions and to come again, in seconds and in metres: twice
-    /// what they took, but for motions that ended where they began. None if there are not so many.
+    /// what they took, but for waits, and for motions that ended where they began. None if there are
+    /// not so many.
     pub(crate) fn there_and_back(
         &self,
         actions: usize,
@@ -203,7 +218,10 @@ impl<'m> Trail<'m> {
             let again = (now - began).max(0.0);
             again + passed.map_or(again, |passed| (passed - began).max(0.0))
         };
-        let time_s = twice(cell.now_s(), to.began_s, passed.map(|motion| motion.began_s));
+        let moved_s = twice(cell.now_s(), to.began_s, passed.map(|motion| motion.began_s));
+        let taken_back = self.actions.iter().rev().take(actions);
+        let waited_s: f64 = taken_back.map(|action| action.waited_s).sum();
+        let time_s = (moved_s - waited_s).max(cell.now_s() - to.began_s);
         let passed_m = passed.map(|motion| motion.began_way_m);
         Some((time_s, twice(cell.way_m(), to.began_way_m, passed_m)))
     }
@@ -258,17 +276,18 @@ impl<'m> Trail<'m> {
     /// Something happened; the workcell is as it was left.
     pub fn note(&mut self, event: &Event, cell: &dyn Workcell) {
         if event.direction == Direction::Forward {
-            self.forward(event);
+            self.forward(event, cell.now_s() - self.now_s);
         }
         self.now_s = cell.now_s();
         self.joints = cell.joints();
         self.way_m = cell.way_m();
     }
 
-    fn forward(&mut self, event: &Event) {
+    fn forward(&mut self, event: &Event, took_s: f64) {
         let is_never = matches!(event.instr.info().class, Class::Never(_));
         if is_never && event.open_blocks == 0 {
             self.begin_anew();
+            self.awaited.retain(|(_, passage)| passage.is_ahead);
             self.never = Some(event.pc);
             return;
         }
@@ -284,7 +303,7 @@ impl<'m> Trail<'m> {
                 let post = Post::Sequence { depth, branches: event.branches.clone() };
                 self.posts.push((began, post));
             }
-            _ => self.act(event, began),
+            _ => self.act(event, began, took_s),
         }
     }
 
@@ -315,7 +334,7 @@ impl<'m> Trail<'m> {
         kind == Some(FunctionKind::Sequence)
     }
 
-    fn act(&mut self, event: &Event, began: u64) {
+    fn act(&mut self, event: &Event, began: u64, took_s: f64) {
         let is_call = matches!(event.instr, Instr::Call { .. });
         let depth = event.frames - usize::from(is_call);
         let Some(entry) = self.module.source_at(event.pc) else { return };
@@ -329,7 +348,7 @@ impl<'m> Trail<'m> {
                 && newest.last_pc < event.pc;
             if is_within || goes_on {
                 newest.last_pc = event.pc;
-                return newest.note_act(event);
+                return newest.note_act(event, took_s);
             }
         }
         if acts && is_action {
@@ -339,6 +358,7 @@ impl<'m> Trail<'m> {
                 began_s: self.now_s,
                 began_way_m: self.way_m,
                 only_moves: true,
+                waited_s: 0.0,
                 number: self.count(),
                 entry: entry.first,
                 last_pc: event.pc,
@@ -348,7 +368,9 @@ impl<'m> Trail<'m> {
                 is_call,
                 motion: None,
             };
-            action.note_act(event);
+            action.note_act(event, took_s);
+            let (entry, depth) = (action.entry, action.depth);
+            self.awaited.retain_mut(|(_, passage)| !passage.is_passed_with(entry, depth));
             self.actions.push(action);
         }
     }

@@ -23,7 +23,7 @@ fn epochs(runs: u64) -> impl Iterator<Item = Range<u64>> {
     let mut end = 0;
     std::iter::from_fn(move || {
         let begin = end;
-        end = runs.min((begin * 2).max(FIRST));
+        end = runs.min((begin + begin / 4).max(begin + FIRST));
         (begin < end).then_some(begin..end)
     })
 }
