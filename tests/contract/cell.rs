@@ -134,6 +134,10 @@ impl Watching for Cell {
     fn watch(&mut self, watches: &[Watch]) {
         self.ledger.watch(watches);
     }
+
+    fn watch_again(&mut self, number: u16) {
+        self.ledger.watch_again(number);
+    }
 }
 
 impl Dice for Cell {

@@ -5,6 +5,7 @@
 //! of the programs here is raised, so that what is tried against it can be read off.
 
 mod again;
+mod bounds;
 mod cleanup;
 mod pairs;
 mod sites;

@@ -193,3 +193,32 @@ fn in_a_fork_it_is_answered_in_the_branch_whose_turn_it_is() {
         assert!(run.is_identical, "{tenth}");
     }
 }
+
+#[test]
+fn what_another_error_takes_back_is_noticed_again_if_it_holds_still() {
+    // `seen` is pending when `late` leads back over where it was noticed.
+    let source = "
+        error seen { on input 0 high  respond after current sequence  recover using help
+                     then continue }
+        error late { recover by reversing 1 action  then return to action }
+        sequence help { set 7 high }
+        sequence main { call inner  wait 1 s }
+        sequence inner { wait 1 s  if not input 1 { throw late }  move 5 mm up }
+    ";
+    let with_input_0 = |changes: &[(f64, bool)]| {
+        let mut case = Case::new(source, NEVER_S);
+        let mut cell = Cell::bare();
+        cell.inputs[0] = InputRule::At(changes.to_vec());
+        cell.inputs[1] = InputRule::At(vec![(1.9, true)]);
+        case.sim = Sim::new(&cell, 0);
+        case.run()
+    };
+    let holds = with_input_0(&[(0.5, true)]);
+    assert_eq!(holds.ending, Ending::Finished);
+    assert_eq!(holds.steps.told, ["Fault", "Back", "Again", "Fault", "Recovered"]);
+    assert!(holds.sim.output(7) && holds.is_identical);
+    // It has ceased to hold by the time the run goes forward again.
+    let ceased = with_input_0(&[(0.5, true), (1.0, false)]);
+    assert_eq!(ceased.steps.told, ["Fault", "Back", "Again", "Recovered"]);
+    assert!(!ceased.sim.output(7));
+}

@@ -8,7 +8,8 @@
 //! Reading order: [`recording`], what is recorded; [`file`](mod@file), its file (`wire`), and
 //! [`taped`], a run that is written to one as it goes; [`recorder`] and [`replay`], the workcells
 //! that write and read it; [`mod@drive`], the clock; [`timeline`], the copies; [`rewound`], a
-//! moment shown; [`run`], one line of history; [`notes`], what it did; [`subject`] and
+//! moment shown; [`run`], one line of history, and how a recovery drives it (`hops`) and would
+//! know it (`retrace`); [`notes`], what it did; [`subject`] and
 //! [`condition`], what can be asked; `writers`, what can change that; [`breakpoint`]; [`place`];
 //! [`session`], what fronts use.
 //! It knows modules and machines, and neither source languages nor how anything is shown.
@@ -17,11 +18,13 @@ pub mod breakpoint;
 pub mod condition;
 pub mod drive;
 pub mod file;
+mod hops;
 pub mod notes;
 pub mod place;
 pub mod recorder;
 pub mod recording;
 pub mod replay;
+mod retrace;
 pub mod rewound;
 pub mod run;
 pub mod session;
@@ -37,6 +40,6 @@ pub use file::{Head, TapeFile, Writer};
 pub use place::{Mode, Position, SourcePlace};
 pub use recording::{Moment, Recording};
 pub use run::{NoFork, Run};
-pub use session::{Change, Declined, Grain, Halt, Session, Walk, Why};
+pub use session::{Change, Declined, Grain, Halt, Policy, Session, Walk, Why};
 pub use subject::{Look, Subject, Value};
 pub use taped::Taped;

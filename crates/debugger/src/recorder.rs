@@ -287,6 +287,11 @@ impl<C: Workcell> Watching for Recorder<'_, C> {
         self.is_watched = !watches.is_empty();
         self.cell.watch(watches);
     }
+
+    fn watch_again(&mut self, number: u16) {
+        self.cell.watch_again(number);
+        self.note(Command::WatchAgain(number), None);
+    }
 }
 
 impl<C: Workcell> Dice for Recorder<'_, C> {

@@ -136,6 +136,8 @@ pub enum Command {
     Wait(f64),
     /// A person's, without which nothing moves after a stop.
     Release,
+    /// What was noticed for an error of this number is to be noticed again if it holds still.
+    WatchAgain(u16),
 }
 
 /// A motion and what came of it.
@@ -230,7 +232,7 @@ impl Log {
                     *level = became;
                 }
             }
-            Command::Wait(_) | Command::Release => {}
+            Command::Wait(_) | Command::Release | Command::WatchAgain(_) => {}
         }
     }
 

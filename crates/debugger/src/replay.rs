@@ -231,6 +231,8 @@ impl Clock for Replay<'_> {
 impl Watching for Replay<'_> {
     /// What came to hold is in the recording.
     fn watch(&mut self, _: &[Watch]) {}
+
+    fn watch_again(&mut self, _: u16) {}
 }
 
 impl Dice for Replay<'_> {

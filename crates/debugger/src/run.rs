@@ -21,9 +21,15 @@ use std::collections::BTreeMap;
 /// One line of history.
 #[derive(Debug)]
 pub struct Run<'p, C> {
-    machine: Machine<'p>,
     cell: Option<C>,
-    recording: Recording,
+    past: Past<'p, C>,
+}
+
+/// All of a run but its workcell.
+#[derive(Debug)]
+pub(crate) struct Past<'p, C> {
+    pub(crate) machine: Machine<'p>,
+    pub(crate) recording: Recording,
     timeline: Timeline,
     notes: Vec<Note>,
     senses: Senses,
@@ -34,6 +40,12 @@ pub struct Run<'p, C> {
     goes_on_at: Option<usize>,
     /// Where going back ends since a variable was changed by hand, in steps of the program.
     changed_at: Option<u64>,
+}
+
+/// A run with its workcell, which can be driven.
+pub(crate) struct Live<'r, 'p, C> {
+    pub(crate) cell: &'r mut C,
+    pub(crate) past: &'r mut Past<'p, C>,
 }
 
 impl<'p, C: Workcell> Run<'p, C> {
@@ -56,9 +68,8 @@ impl<'p, C: Workcell> Run<'p, C> {
     fn begin(machine: Machine<'p>, cell: Option<C>, recording: Recording) -> Self {
         let cursor = Cursor::start(&recording);
         let start = Checkpoint { moment: Moment(0), stretch: 0, cursor, kept: machine.keep() };
-        Self {
+        let past = Past {
             machine,
-            cell,
             recording,
             timeline: Timeline::new(start),
             notes: Vec::new(),
@@ -67,7 +78,8 @@ impl<'p, C: Workcell> Run<'p, C> {
             forced: BTreeMap::new(),
             goes_on_at: Some(0),
             changed_at: None,
-        }
+        };
+        Self { cell, past }
     }
 
     /// A recording at its end. With the workcell that it began in, if that is simulated, what
@@ -87,28 +99,30 @@ impl<'p, C: Workcell> Run<'p, C> {
 
     /// Go through the whole recording, and note what is in it. Whether it fits the program.
     fn replay_all(&mut self) -> bool {
-        let mut rewound = Rewound::at(&self.machine, self.timeline.before(Moment(0)));
-        while rewound.moment() < self.recording.end && !rewound.cursor().is_lost() {
-            let until_due = self.timeline.until_due(rewound.moment());
-            let to = rewound.moment().after(until_due.unwrap_or(1)).min(self.recording.end);
+        let mut rewound = Rewound::at(&self.past.machine, self.past.timeline.before(Moment(0)));
+        while rewound.moment() < self.past.recording.end && !rewound.cursor().is_lost() {
+            let until_due = self.past.timeline.until_due(rewound.moment());
+            let to = rewound.moment().after(until_due.unwrap_or(1)).min(self.past.recording.end);
             let offset = rewound.moment().0.wrapping_sub(rewound.machine().executed());
-            let (notes, is_telling) = (&mut self.notes, &Cell::new(false));
+            let (notes, is_telling) = (&mut self.past.notes, &Cell::new(false));
             let mut noting = Noting { notes, offset, observer: &mut (), is_telling };
-            let Some(_) = rewound.advance_some(&self.recording, to, &mut noting) else { break };
-            if self.timeline.until_due(rewound.moment()).is_none() {
-                self.timeline.keep(rewound.checkpoint());
+            let Some(_) = rewound.advance_some(&self.past.recording, to, &mut noting) else {
+                break;
+            };
+            if self.past.timeline.until_due(rewound.moment()).is_none() {
+                self.past.timeline.keep(rewound.checkpoint());
             }
         }
-        let is_whole = rewound.moment() == self.recording.end && !rewound.cursor().is_lost();
-        rewound.go_to(&self.recording, &self.timeline, self.recording.end);
-        self.machine = rewound.machine().clone();
+        let is_whole = rewound.moment() == self.past.recording.end && !rewound.cursor().is_lost();
+        rewound.go_to(&self.past.recording, &self.past.timeline, self.past.recording.end);
+        self.past.machine = rewound.machine().clone();
         is_whole
     }
 
     /// The machine where the run has come to.
     #[must_use]
     pub fn machine(&self) -> &Machine<'p> {
-        &self.machine
+        &self.past.machine
     }
 
     /// The workcell, if the run is live.
@@ -120,58 +134,68 @@ impl<'p, C: Workcell> Run<'p, C> {
     /// Whether copies of its workcell are kept, so that it can go on otherwise.
     #[must_use]
     pub fn is_simulated(&self) -> bool {
-        self.copies.is_some()
+        self.past.copies.is_some()
     }
 
     /// How it came there.
     #[must_use]
     pub fn recording(&self) -> &Recording {
-        &self.recording
+        &self.past.recording
     }
 
     /// Places along it.
     #[must_use]
     pub fn timeline(&self) -> &Timeline {
-        &self.timeline
+        &self.past.timeline
     }
 
     /// What it did that is worth telling, oldest first.
     #[must_use]
     pub fn notes(&self) -> &[Note] {
-        &self.notes
+        &self.past.notes
     }
 
     /// Where going back ends since a variable was changed by hand, in steps of the program.
     #[must_use]
     pub fn changed_at(&self) -> Option<u64> {
-        self.changed_at
+        self.past.changed_at
     }
 
     /// The level of an input when it was last read; none if it was not.
     #[must_use]
     pub fn input(&self, bit: u16) -> Option<bool> {
-        self.senses.input(bit)
+        self.past.senses.input(bit)
     }
 
     /// The run at its end, as a recording shows it.
     #[must_use]
     pub fn rewound(&self) -> Rewound<'p> {
-        let mut rewound = Rewound::at(&self.machine, self.timeline.before(self.recording.end));
-        rewound.go_to(&self.recording, &self.timeline, self.recording.end);
+        let mut rewound =
+            Rewound::at(&self.past.machine, self.past.timeline.before(self.past.recording.end));
+        rewound.go_to(&self.past.recording, &self.past.timeline, self.past.recording.end);
         rewound
     }
 
     /// The state at its end and the tape there, as plain data.
     #[must_use]
     pub fn as_data(&self) -> (Snapshot, Streams) {
-        let streams = self.machine.streams();
+        let streams = self.past.machine.streams();
         match &self.cell {
-            Some(cell) => (self.machine.snapshot(cell), streams),
+            Some(cell) => (self.past.machine.snapshot(cell), streams),
             None => {
                 let mut cursor = self.rewound().cursor().clone();
-                (self.machine.snapshot(&Replay::new(&self.recording, &mut cursor)), streams)
+                (
+                    self.past.machine.snapshot(&Replay::new(&self.past.recording, &mut cursor)),
+                    streams,
+                )
             }
         }
+    }
+
+    /// The run with its workcell; none of a recording.
+    pub(crate) fn live(&mut self) -> Option<Live<'_, 'p, C>> {
+        let cell = self.cell.as_mut()?;
+        Some(Live { cell, past: &mut self.past })
     }
 
     /// Drive the machine where the run has come to, and record it; none of a recording. It stops
@@ -182,52 +206,84 @@ impl<'p, C: Workcell> Run<'p, C> {
         pace: Pace<'_>,
         observer: &mut dyn Observer,
     ) -> Option<Driven> {
-        let cell = self.cell.as_mut()?;
-        begin(&mut self.recording, order, self.goes_on_at);
-        let until_due = self.timeline.until_due(self.recording.end).unwrap_or(1);
+        self.live().map(|mut live| live.drive(order, pace, observer))
+    }
+
+    /// Give the command without which nothing moves after a stop.
+    pub fn release(&mut self) {
+        if let Some(mut live) = self.live() {
+            live.release();
+        }
+    }
+}
+
+impl<C: Workcell> Live<'_, '_, C> {
+    /// Drive the machine, and record it. It stops early where a copy is due: `stop` is none then.
+    pub(crate) fn drive(
+        &mut self,
+        order: Order,
+        pace: Pace<'_>,
+        observer: &mut dyn Observer,
+    ) -> Driven {
+        let past = &mut *self.past;
+        begin(&mut past.recording, order, past.goes_on_at);
+        let until_due = past.timeline.until_due(past.recording.end).unwrap_or(1);
         let pace = match pace {
             Pace::Step => Pace::Step,
             Pace::Run(most) => Pace::Run(most.min(until_due)),
             Pace::To(stops, most) => Pace::To(stops, most.min(until_due)),
         };
-        let (log, senses) = (&mut self.recording.log, &mut self.senses);
-        let (copies, is_telling) = (self.copies.as_mut(), Cell::new(false));
-        let mut recorder = Recorder::new(cell, log, senses, copies, &self.forced, &is_telling);
-        let offset = self.recording.end.0.wrapping_sub(self.machine.executed());
-        let (notes, is_telling) = (&mut self.notes, &is_telling);
+        let (log, senses) = (&mut past.recording.log, &mut past.senses);
+        let (copies, is_telling) = (past.copies.as_mut(), Cell::new(false));
+        let mut recorder = Recorder::new(self.cell, log, senses, copies, &past.forced, &is_telling);
+        let offset = past.recording.end.0.wrapping_sub(past.machine.executed());
+        let (notes, is_telling) = (&mut past.notes, &is_telling);
         let mut noting = Noting { notes, offset, observer, is_telling };
-        let driven = drive(&mut self.machine, order, pace, &mut recorder, &mut noting);
+        let driven = drive(&mut past.machine, order, pace, &mut recorder, &mut noting);
         drop(recorder);
         let is_trapped = matches!(driven.stop, Some(Stop::Trap(_)));
-        self.goes_on_at = (!is_trapped).then_some(self.recording.log.frames.len());
-        self.recording.end = self.recording.end.after(driven.ticks);
+        past.goes_on_at = (!is_trapped).then_some(past.recording.log.frames.len());
+        past.recording.end = past.recording.end.after(driven.ticks);
         if matches!(order, Order::SetGlobal(..) | Order::SetLocal(..)) {
-            self.changed_at = Some(self.machine.state().steps());
+            past.changed_at = Some(past.machine.state().steps());
         }
         self.keep_if_due();
-        Some(driven)
+        driven
     }
 
     fn keep_if_due(&mut self) {
-        if self.timeline.until_due(self.recording.end).is_some() {
+        let past = &mut *self.past;
+        if past.timeline.until_due(past.recording.end).is_some() {
             return;
         }
-        let stretch = self.recording.stretches.len() - 1;
-        let (Some(cell), moment) = (&self.cell, self.recording.end) else { return };
-        let log = &self.recording.log;
-        let cursor =
-            Cursor::here(world(cell), log.frames.len(), log.readings.len(), self.senses.known());
-        self.timeline.keep(Checkpoint { moment, stretch, cursor, kept: self.machine.keep() });
+        let stretch = past.recording.stretches.len() - 1;
+        let (log, moment) = (&past.recording.log, past.recording.end);
+        let (frames, readings) = (log.frames.len(), log.readings.len());
+        let cursor = Cursor::here(world(self.cell), frames, readings, past.senses.known());
+        past.timeline.keep(Checkpoint { moment, stretch, cursor, kept: past.machine.keep() });
+    }
+
+    /// Note on the tape what happened.
+    pub(crate) fn note(&mut self, note: obverse_tape::Note) {
+        let recording = &mut self.past.recording;
+        let index = recording.log.notes.len() as u32;
+        begin(recording, Order::Note(index), self.past.goes_on_at);
+        recording.log.notes.push(note.clone());
+        self.past.machine.note(note);
+    }
+
+    /// What is commanded beside the program, recorded.
+    pub(crate) fn beside<T>(&mut self, command: impl FnOnce(&mut Recorder<'_, C>) -> T) -> T {
+        let past = &mut *self.past;
+        let (log, senses) = (&mut past.recording.log, &mut past.senses);
+        let (copies, nobody) = (past.copies.as_mut(), Cell::new(false));
+        let mut recorder = Recorder::new(self.cell, log, senses, copies, &past.forced, &nobody);
+        command(&mut recorder)
     }
 
     /// Give the command without which nothing moves after a stop.
-    pub fn release(&mut self) {
-        let Some(cell) = self.cell.as_mut() else { return };
-        let (log, senses) = (&mut self.recording.log, &mut self.senses);
-        let copies = self.copies.as_mut();
-        let nobody = Cell::new(false);
-        let mut recorder = Recorder::new(cell, log, senses, copies, &self.forced, &nobody);
-        obverse_workcell::Safety::release(&mut recorder);
+    pub(crate) fn release(&mut self) {
+        self.beside(|recorder| obverse_workcell::Safety::release(recorder));
     }
 }
 
@@ -237,11 +293,11 @@ impl<'p, C: Workcell + Clone> Run<'p, C> {
     #[must_use]
     pub fn simulated(mut self, start: Option<C>) -> Self {
         let (frame, cell) = match (&self.cell, &start) {
-            (Some(cell), _) => (self.recording.log.frames.len(), cell),
+            (Some(cell), _) => (self.past.recording.log.frames.len(), cell),
             (None, Some(start)) => (0, start),
             (None, None) => return self,
         };
-        self.copies = Some(Copies::new(C::clone, frame, cell));
+        self.past.copies = Some(Copies::new(C::clone, frame, cell));
         self
     }
 }
@@ -290,32 +346,38 @@ impl<'p, C: Workcell> Run<'p, C> {
     /// If the workcell of that moment cannot be had.
     pub fn fork(&self, at: &Rewound<'p>) -> Result<Self, NoFork> {
         let frame = at.cursor().frame();
-        let copies = self.copies.as_ref().ok_or(NoFork::NotSimulated)?;
+        let copies = self.past.copies.as_ref().ok_or(NoFork::NotSimulated)?;
         let (from, mut cell) = copies.before(frame).ok_or(NoFork::NotSimulated)?;
         for number in from..frame {
             self.do_again(number, &mut cell)
                 .ok_or(NoFork::AnotherWorkcell { frame: number + 1 })?;
         }
-        let recording = self.recording.up_to(at);
-        Ok(Self {
+        let recording = self.past.recording.up_to(at);
+        let past = Past {
             machine: at.machine().clone(),
             copies: Some(Copies::new(copies.how(), frame, &cell)),
-            cell: Some(cell),
-            timeline: self.timeline.before_all_of(at.moment()),
-            notes: self.notes.iter().filter(|note| note.moment < at.moment()).copied().collect(),
+            timeline: self.past.timeline.before_all_of(at.moment()),
+            notes: self
+                .past
+                .notes
+                .iter()
+                .filter(|note| note.moment < at.moment())
+                .copied()
+                .collect(),
             senses: Senses::at(at.cursor()),
-            forced: self.forced.clone(),
+            forced: self.past.forced.clone(),
             goes_on_at: Some(frame),
-            changed_at: self.changed_at.filter(|steps| *steps <= at.machine().state().steps()),
+            changed_at: self.past.changed_at.filter(|steps| *steps <= at.machine().state().steps()),
             recording,
-        })
+        };
+        Ok(Self { cell: Some(cell), past })
     }
 
     /// Let a workcell do a command of the recording; none if it comes to something else.
     fn do_again(&self, number: usize, cell: &mut C) -> Option<()> {
-        let log = &self.recording.log;
+        let log = &self.past.recording.log;
         let frame = log.frames.get(number)?;
-        cell.watch(if frame.is_watched { self.machine.watches() } else { &[] });
+        cell.watch(if frame.is_watched { self.past.machine.watches() } else { &[] });
         let done: Result<(), Fault> = match frame.command {
             Command::Execute(index) => {
                 let moved = log.motions.get(index as usize)?;
@@ -331,6 +393,10 @@ impl<'p, C: Workcell> Run<'p, C> {
                 cell.release();
                 Ok(())
             }
+            Command::WatchAgain(number) => {
+                cell.watch_again(number);
+                Ok(())
+            }
         };
         let is_same = done.err().as_ref() == log.fault(frame)
             && cell.held() == frame.held
@@ -341,8 +407,8 @@ impl<'p, C: Workcell> Run<'p, C> {
     /// From here on, an input is read as this level, or as what it is.
     pub fn force_input(&mut self, bit: u16, level: Option<bool>) {
         match level {
-            Some(level) => drop(self.forced.insert(bit, level)),
-            None => drop(self.forced.remove(&bit)),
+            Some(level) => drop(self.past.forced.insert(bit, level)),
+            None => drop(self.past.forced.remove(&bit)),
         }
     }
 

@@ -5,13 +5,15 @@
 //! else it is rewound: it shows what was, commands nothing, and passes what cannot be taken back.
 //! From a rewound moment of a simulated run one may go on otherwise, in a run of its own.
 //!
-//! How one moves is in `travel`, how one finds a moment in `search`, what is told of a moment in
-//! `tell`. A session prints nothing: fronts do.
+//! How one moves is in `travel`, what is done about errors in `recover`, how one finds a moment in
+//! `search`, what is told of a moment in `tell`. A session prints nothing: fronts do.
 
+mod recover;
 mod search;
 mod tell;
 mod travel;
 
+pub use recover::Policy;
 pub use search::Change;
 pub use tell::{Action, FrameView, Variable, Why};
 pub use travel::{Grain, Halt, Walk};
@@ -20,12 +22,15 @@ use crate::breakpoint::{Breakpoint, stops};
 use crate::place::{Mode, Position, source_place};
 use crate::recording::{Moment, Order, Recording, World};
 use crate::replay::Cursor;
+use crate::retrace::is_altered;
 use crate::rewound::Rewound;
 use crate::run::{NoFork, Run};
 use crate::subject::{Look, Seen, Subject, Value, bits};
 use obverse_bytecode::{Module, Verified};
-use obverse_vm::{Direction, LinkError, Machine, Observer, Stops};
+use obverse_recovery::{Memory, Teller};
+use obverse_vm::{Direction, LinkError, Machine, Stops};
 use obverse_workcell::{ItemId, Workcell};
+use recover::Standing;
 use std::collections::BTreeMap;
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
@@ -36,8 +41,10 @@ const MAX_JUMPS: usize = 100;
 /// A session over a run.
 pub struct Session<'p, C> {
     run: Run<'p, C>,
-    /// The runs that what is tried left, outermost first, and the moment that was shown of each.
-    left: Vec<(Run<'p, C>, Option<Moment>)>,
+    /// How the run stands with its errors.
+    standing: Standing<'p>,
+    /// The runs that what is tried left, outermost first.
+    left: Vec<Left<'p, C>>,
     /// What is shown, if it is not the run where it has come to.
     view: Option<Rewound<'p>>,
     breakpoints: Vec<Breakpoint>,
@@ -48,10 +55,21 @@ pub struct Session<'p, C> {
     bookmarks: BTreeMap<String, Moment>,
     /// What breakpoints have told, each with its number.
     told: Vec<(u32, String)>,
-    observer: Box<dyn Observer + Send + 'p>,
+    teller: Box<dyn Teller + Send + 'p>,
+    policy: Policy,
+    /// What was learned of how far to go back.
+    memory: Memory,
     interrupt: Arc<AtomicBool>,
     /// The most instructions that one command runs.
     limit: u64,
+}
+
+/// A run that was left for what is tried.
+struct Left<'p, C> {
+    run: Run<'p, C>,
+    standing: Standing<'p>,
+    /// The moment of it that was shown.
+    shown: Option<Moment>,
 }
 
 /// Why a command was not carried out; nothing has changed.
@@ -85,6 +103,8 @@ pub enum Declined {
     NoFork(NoFork),
     /// This cannot be given a value, or none of this type.
     NotAssignable,
+    /// No error is due.
+    NothingDue,
 }
 
 impl std::fmt::Display for Declined {
@@ -110,6 +130,7 @@ impl std::fmt::Display for Declined {
             Self::NoWhatIf => write!(f, "nothing is being tried that could be left"),
             Self::NoFork(why) => why.fmt(f),
             Self::NotAssignable => write!(f, "it cannot be given this value"),
+            Self::NothingDue => write!(f, "no error is due in the run"),
         }
     }
 }
@@ -130,6 +151,7 @@ impl<'p, C: Workcell> Session<'p, C> {
     pub fn over(run: Run<'p, C>) -> Self {
         let view = run.cell().is_none().then(|| run.rewound());
         Self {
+            standing: Standing::of(&run),
             run,
             left: Vec::new(),
             view,
@@ -139,15 +161,17 @@ impl<'p, C: Workcell> Session<'p, C> {
             jumps: Vec::new(),
             bookmarks: BTreeMap::new(),
             told: Vec::new(),
-            observer: Box::new(()),
+            teller: Box::new(()),
+            policy: Policy::declared(0),
+            memory: Memory::default(),
             interrupt: Arc::default(),
             limit: u64::MAX,
         }
     }
 
-    /// Tell somebody what the machine does while it is live.
-    pub fn tell_to(&mut self, observer: Box<dyn Observer + Send + 'p>) {
-        self.observer = observer;
+    /// Tell somebody what the machine does while it is live, and what is done about errors.
+    pub fn tell_to(&mut self, teller: Box<dyn Teller + Send + 'p>) {
+        self.teller = teller;
     }
 
     /// Let no command run more than about so many instructions.
@@ -323,16 +347,6 @@ impl<'p, C: Workcell> Session<'p, C> {
         self.bookmarks.insert(name.to_owned(), self.moment());
     }
 
-    /// Give the command without which nothing moves after a stop.
-    ///
-    /// # Errors
-    /// If no live run is shown.
-    pub fn release(&mut self) -> Result<(), Declined> {
-        self.require_live()?;
-        self.run.release();
-        Ok(())
-    }
-
     fn require_live(&self) -> Result<(), Declined> {
         let is_live = self.view.is_none() && self.run.cell().is_some();
         if is_live { Ok(()) } else { Err(Declined::NotLive) }
@@ -345,9 +359,19 @@ impl<'p, C: Workcell> Session<'p, C> {
     /// If the workcell of that moment cannot be had.
     pub fn what_if(&mut self) -> Result<(), Declined> {
         let at = self.view.clone().unwrap_or_else(|| self.run.rewound());
-        let fork = self.run.fork(&at).map_err(Declined::NoFork)?;
+        let mut run = self.run.fork(&at).map_err(Declined::NoFork)?;
+        let is_elsewhere = self.view.is_some();
+        let standing = self.standing_at(&at);
+        if is_elsewhere && is_altered(&self.run, &at) {
+            // What was tried by then is put aside, and what it had changed with it.
+            run.drive(Order::Alter(None), crate::drive::Pace::Step, &mut ());
+        }
         let shown = self.view.take().map(|view| view.moment());
-        self.left.push((std::mem::replace(&mut self.run, fork), shown));
+        let (run, standing) = (
+            std::mem::replace(&mut self.run, run),
+            std::mem::replace(&mut self.standing, standing),
+        );
+        self.left.push(Left { run, standing, shown });
         self.jumps.clear();
         Ok(())
     }
@@ -357,8 +381,8 @@ impl<'p, C: Workcell> Session<'p, C> {
     /// # Errors
     /// If nothing is tried.
     pub fn leave_what_if(&mut self) -> Result<(), Declined> {
-        let (run, shown) = self.left.pop().ok_or(Declined::NoWhatIf)?;
-        self.run = run;
+        let Left { run, standing, shown } = self.left.pop().ok_or(Declined::NoWhatIf)?;
+        (self.run, self.standing) = (run, standing);
         self.view = None;
         self.jumps.clear();
         self.show(shown);
@@ -399,6 +423,7 @@ impl<'p, C: Workcell> Session<'p, C> {
         }
         let order = self.assignment(subject, value).ok_or(Declined::NotAssignable)?;
         self.run.drive(order, crate::drive::Pace::Step, &mut ());
+        self.note_assigned();
         Ok(())
     }
 

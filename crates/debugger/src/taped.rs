@@ -260,6 +260,10 @@ impl<'p, C: Workcell> recovery::Driven<'p, C> for Taped<'_, '_, 'p, C> {
         })
     }
 
+    fn watch_again(&mut self, number: u16) {
+        self.recorded(|_, recorder| recorder.watch_again(number));
+    }
+
     fn release(&mut self) {
         self.recorded(|_, recorder| recorder.release());
     }

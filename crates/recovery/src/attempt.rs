@@ -6,12 +6,14 @@ use crate::change;
 use crate::ending::GiveUp;
 use crate::fault;
 use crate::incident::Attempt;
-use crate::recover::{Plan, Run, Watch};
+use crate::plan::Plan;
+use crate::recover::{Run, Watch};
+use crate::recovering::{Advance, Leg, Phase, Trial, Way};
 use crate::tell::{Step, Why};
 use obverse_geometry::{Axis, Frame};
-use obverse_isa::Instr;
+use obverse_isa::{ErrorId, Instr};
 use obverse_vm::{Mark, Stop};
-use obverse_workcell::{Goal, Motion, Path, Speed, Workcell};
+use obverse_workcell::{Fault, Goal, Motion, Path, Speed, Workcell};
 
 /// How often a way back that is blocked is tried again.
 const BLOCKED_TRIES: u32 = 2;
@@ -19,117 +21,207 @@ const BLOCKED_TRIES: u32 = 2;
 const BACK_UP_MIN_M: f64 = 0.005;
 
 impl<C: Workcell> Run<'_, '_, '_, C> {
-    /// Make an attempt. It counts, unless it could not be begun.
-    pub(crate) fn carry_out(&mut self, index: usize, plan: Plan) -> Result<(), GiveUp> {
-        let incident = &self.open[index];
-        let began_s = self.driven.cell().now_s();
-        let planned = if let Plan::Back { actions, .. } = plan { actions } else { 0 };
-        let search = incident.next_search(&self.trail, planned);
+    /// Begin an attempt. It counts, unless it could not be begun.
+    pub(crate) fn begin(&mut self, index: usize, plan: Plan) -> Result<(), GiveUp> {
+        let trial = self.trial(index, &plan);
+        match plan {
+            Plan::Back { actions, why } => self.begin_way(index, actions, why, trial),
+            Plan::InPlace { backed_up_m } => {
+                let done = self.in_place(index, backed_up_m).map(|()| 0);
+                self.finish(index, trial, done)
+            }
+            Plan::Restart => {
+                let done = self.restart(index).map(|()| 0);
+                self.finish(index, trial, done)
+            }
+        }
+    }
+
+    /// What an attempt will be.
+    pub(crate) fn trial(&self, index: usize, plan: &Plan) -> Trial {
+        let incident = &self.at.open[index];
+        let planned = if let Plan::Back { actions, .. } = *plan { actions } else { 0 };
+        let search = incident.next_search(&self.at.trail, planned);
         let policy = reversal(self.declared(incident)).filter(|_| planned > 0);
-        let is_anew = search.is_anew || matches!(plan, Plan::Restart);
         let seed = self.recovery.seed;
-        let change = policy
-            .and_then(|policy| change::of_incident(policy, incident, &self.trail, search, seed));
-        let done = match plan {
-            Plan::Back { actions, why } => self.back(index, actions, why),
-            Plan::InPlace { backed_up_m } => self.in_place(index, backed_up_m).map(|()| 0),
-            Plan::Restart => self.restart(index).map(|()| 0),
-        };
+        Trial {
+            planned,
+            began_s: self.driven.cell().now_s(),
+            search,
+            is_anew: search.is_anew || matches!(plan, Plan::Restart),
+            change: policy.and_then(|policy| {
+                change::of_incident(policy, incident, &self.at.trail, search, seed)
+            }),
+        }
+    }
+
+    /// An attempt has come to where the run goes forward again, so many actions having been taken
+    /// back, or it was in vain.
+    fn finish(
+        &mut self,
+        index: usize,
+        trial: Trial,
+        done: Result<usize, GiveUp>,
+    ) -> Result<(), GiveUp> {
         if let Err(why @ GiveUp::NoWayBack { .. }) = done {
             return Err(why);
         }
+        let Trial { planned, began_s, search, is_anew, change } = trial;
         if is_anew {
             self.settle_passed();
         }
-        self.attempts += 1;
+        self.at.attempts += 1;
         let actions = done.unwrap_or(planned);
-        self.open[index].attempts.push(Attempt { actions, began_s, search });
+        self.at.open[index].attempts.push(Attempt { actions, began_s, search });
         done?;
         self.driven.alter(change);
         self.say_of(index, |incident| Step::Again { incident, change });
         Ok(())
     }
 
-    /// Take the run back, in the world: how many actions it was taken back.
-    fn back(&mut self, index: usize, actions: usize, why: Why) -> Result<usize, GiveUp> {
-        let known = self.trail.actions();
+    /// Begin to take the run back, in the world.
+    fn begin_way(
+        &mut self,
+        index: usize,
+        actions: usize,
+        why: Why,
+        trial: Trial,
+    ) -> Result<(), GiveUp> {
+        let known = self.at.trail.actions();
         let count = known.len();
         let Some(to) = count.checked_sub(actions).and_then(|at| known.get(at)) else {
-            return Err(GiveUp::NoWayBack { never: self.trail.never() });
+            return Err(GiveUp::NoWayBack { never: self.at.trail.never() });
         };
         let (mark, to) = (to.steps, to.pc);
         self.say_of(index, |incident| Step::Back { incident, actions, to, why });
         self.pass_round_trip(index, mark)?;
-        let mut tries = 0;
-        loop {
-            let mut watch = Watch { trail: &mut self.trail, teller: &mut *self.teller };
-            match self.driven.reverse_to(Mark::at(mark), &mut watch) {
-                Stop::AtMark | Stop::OffMark | Stop::AtStart => {
-                    self.trail.cut(self.driven.machine().state().steps());
-                    return Ok(count - self.trail.actions().len());
-                }
-                Stop::Fault { fault, pc, .. } => {
-                    self.say_of(index, |incident| Step::Blocked { incident, fault: &fault, pc });
-                    if !self.may_move(&fault) {
-                        return Err(GiveUp::Blocked);
-                    }
-                    tries += 1;
-                    if tries > BLOCKED_TRIES {
-                        let taken = self.cut_into_act(count, pc);
-                        return self.forward_from_there(index).map(|()| taken);
-                    }
-                }
-                _ => return Err(GiveUp::NoWayBack { never: self.trail.never() }),
+        self.at.phase = Phase::Way(Way { index, mark, count, tries: 0, leg: Leg::Back, trial });
+        Ok(())
+    }
+
+    /// Go on with a way back.
+    pub(crate) fn go_on_way(&mut self, way: Way) -> Advance {
+        match way.leg.clone() {
+            Leg::Back => self.go_back(way),
+            Leg::Blocked { fault, pc } => self.try_again(way, &fault, pc),
+            Leg::Again { actions } => self.do_again(way, actions),
+            Leg::Stuck { actions, fault, pc } => self.get_unstuck(way, actions, &fault, pc),
+        }
+    }
+
+    fn go_back(&mut self, way: Way) -> Advance {
+        let mut watch = Watch { trail: &mut self.at.trail, teller: &mut *self.teller };
+        match self.driven.reverse_to(Mark::at(way.mark), &mut watch) {
+            Stop::Budget => {
+                self.at.phase = Phase::Way(way);
+                Advance::On
+            }
+            Stop::AtMark | Stop::OffMark | Stop::AtStart => {
+                self.at.trail.cut(self.driven.machine().state().steps());
+                self.notice_again(way.index);
+                let taken = way.count - self.at.trail.actions().len();
+                self.come_to_end(way, Ok(taken))
+            }
+            Stop::Fault { fault, pc, direction } => {
+                let index = way.index;
+                self.say_of(index, |incident| Step::Blocked { incident, fault: &fault, pc });
+                let leg = Leg::Blocked { fault: fault.clone(), pc };
+                self.at.phase = Phase::Way(Way { leg, ..way });
+                Advance::Stopped(Stop::Fault { fault, pc, direction })
+            }
+            _ => {
+                let never = self.at.trail.never();
+                self.come_to_end(way, Err(GiveUp::NoWayBack { never }))
             }
         }
+    }
+
+    /// An attempt is over that took the run back, or was to.
+    fn come_to_end(&mut self, way: Way, done: Result<usize, GiveUp>) -> Advance {
+        let ended = match self.finish(way.index, way.trial, done) {
+            Ok(()) => None,
+            Err(why) => self.give_up(way.index, why),
+        };
+        self.goes_on_unless(ended)
+    }
+
+    /// A way back that was blocked is tried again, or gone forward from there.
+    fn try_again(&mut self, way: Way, fault: &Fault, pc: u32) -> Advance {
+        if !self.may_move(fault) {
+            return self.come_to_end(way, Err(GiveUp::Blocked));
+        }
+        let tries = way.tries + 1;
+        let leg = if tries > BLOCKED_TRIES {
+            Leg::Again { actions: self.cut_into_act(way.index, way.count, pc) }
+        } else {
+            Leg::Back
+        };
+        self.at.phase = Phase::Way(Way { leg, tries, ..way });
+        Advance::On
+    }
+
+    /// The way back is blocked: what was half undone is done again, and the run goes forward from
+    /// there.
+    fn do_again(&mut self, way: Way, actions: usize) -> Advance {
+        let mut watch = Watch { trail: &mut self.at.trail, teller: &mut *self.teller };
+        match self.driven.step(&mut watch) {
+            Ok(()) | Err(Stop::Raised { .. }) => self.come_to_end(way, Ok(actions)),
+            Err(Stop::Fault { fault, pc, direction }) => {
+                let error = self.error_of(way.index, &fault);
+                self.say(&Step::Fault { fault: &fault, pc, error });
+                let leg = Leg::Stuck { actions, fault: fault.clone(), pc };
+                self.at.phase = Phase::Way(Way { leg, ..way });
+                Advance::Stopped(Stop::Fault { fault, pc, direction })
+            }
+            Err(_) => self.come_to_end(way, Err(GiveUp::Blocked)),
+        }
+    }
+
+    /// That was blocked too: the fault is an error of the program, or what was tried to be
+    /// recovered from is pending again.
+    fn get_unstuck(&mut self, way: Way, actions: usize, fault: &Fault, pc: u32) -> Advance {
+        let is_named = fault::error_of(self.module(), fault).is_some();
+        let error = self.error_of(way.index, fault);
+        let is_raised = self.raise(fault, pc, error);
+        let is_done = is_raised && is_named;
+        self.come_to_end(way, if is_done { Ok(actions) } else { Err(GiveUp::Blocked) })
+    }
+
+    /// The error that a fault is, or that of an incident.
+    fn error_of(&self, index: usize, fault: &Fault) -> ErrorId {
+        fault::error_of(self.module(), fault).unwrap_or(self.at.open[index].error)
     }
 
     /// Motions that ended where they began are taken back in the program alone: going there again
     /// and back would press anew on what had stopped them, for nothing.
     fn pass_round_trip(&mut self, index: usize, since: u64) -> Result<(), GiveUp> {
-        let Some(motion) = self.trail.round_trip(since, &self.driven.cell().joints()) else {
+        let Some(motion) = self.at.trail.round_trip(since, &self.driven.cell().joints()) else {
             return Ok(());
         };
         let (steps, pc) = (motion.steps, motion.pc);
         self.say_of(index, |incident| Step::RoundTrip { incident, pc });
-        self.unwind(steps)
+        self.unwind(index, steps)
     }
 
     /// The trail ends before the act whose return is blocked: how many of so many actions have been
     /// taken back.
-    fn cut_into_act(&mut self, count: usize, pc: u32) -> usize {
+    fn cut_into_act(&mut self, index: usize, count: usize, pc: u32) -> usize {
         let prefix = self.module().code.get(pc as usize).map_or(0, Instr::prefix);
         let before = self.driven.machine().state().steps().saturating_sub(1 + u64::from(prefix));
-        self.trail.cut_into(before, pc);
-        count - self.trail.actions().len()
-    }
-
-    /// The way back is blocked: what was half undone is done again, and the run goes forward from
-    /// there. If that is blocked too, the fault is an error of the program, or what was tried to be
-    /// recovered from is pending again.
-    fn forward_from_there(&mut self, index: usize) -> Result<(), GiveUp> {
-        let mut watch = Watch { trail: &mut self.trail, teller: &mut *self.teller };
-        match self.driven.step(&mut watch) {
-            Ok(()) | Err(Stop::Raised { .. }) => Ok(()),
-            Err(Stop::Fault { fault, pc, .. }) => {
-                let named = fault::error_of(self.module(), &fault);
-                let error = named.unwrap_or(self.open[index].error);
-                let is_raised = self.raise(&fault, pc, error);
-                if is_raised && named.is_some() { Ok(()) } else { Err(GiveUp::Blocked) }
-            }
-            Err(_) => Err(GiveUp::Blocked),
-        }
+        self.at.trail.cut_into(before, pc);
+        self.notice_again(index);
+        count - self.at.trail.actions().len()
     }
 
     /// Take the program alone back to the start of the action that failed.
     fn in_place(&mut self, index: usize, back_up_m: Option<f64>) -> Result<(), GiveUp> {
-        let Some(action) = self.trail.newest_of(&self.open[index].branches) else {
-            return Err(GiveUp::NoWayBack { never: self.trail.never() });
+        let Some(action) = self.at.trail.newest_of(&self.at.open[index].branches) else {
+            return Err(GiveUp::NoWayBack { never: self.at.trail.never() });
         };
         let steps = action.steps;
         let backed_up_m = back_up_m.map(|distance_m| self.back_up(distance_m));
         self.say_of(index, |incident| Step::InPlace { incident, backed_up_m });
-        self.unwind(steps)
+        self.unwind(index, steps)
     }
 
     /// The tool straight back, as far as it goes, and how far that was, in metres.
@@ -156,20 +248,21 @@ impl<C: Workcell> Run<'_, '_, '_, C> {
     }
 
     fn restart(&mut self, index: usize) -> Result<(), GiveUp> {
-        if let Some(never) = self.trail.never() {
+        if let Some(never) = self.at.trail.never() {
             return Err(GiveUp::NoWayBack { never: Some(never) });
         }
         self.say_of(index, |incident| Step::InPlace { incident, backed_up_m: None });
-        self.unwind(0)
+        self.unwind(index, 0)
     }
 
-    fn unwind(&mut self, steps: u64) -> Result<(), GiveUp> {
+    fn unwind(&mut self, index: usize, steps: u64) -> Result<(), GiveUp> {
         match self.driven.unwind_to(Mark::at(steps)) {
             Ok(()) | Err(Stop::AtStart) => {
-                self.trail.cut(self.driven.machine().state().steps());
+                self.at.trail.cut(self.driven.machine().state().steps());
+                self.notice_again(index);
                 Ok(())
             }
-            Err(_) => Err(GiveUp::NoWayBack { never: self.trail.never() }),
+            Err(_) => Err(GiveUp::NoWayBack { never: self.at.trail.never() }),
         }
     }
 }

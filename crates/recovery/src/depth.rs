@@ -101,8 +101,7 @@ impl Question<'_> {
     }
 
     fn learned(&self, furthest: usize, memory: &mut Memory) -> Result<(usize, Why), GiveUp> {
-        let costs_s: Vec<f64> =
-            (1..=furthest.min(DEPTH_MAX)).map(self.costs_s).collect();
+        let costs_s: Vec<f64> = (1..=furthest.min(DEPTH_MAX)).map(self.costs_s).collect();
         let (give_up_s, attempts_left) = (self.give_up_s, self.attempts_left);
         let costs = Costs { by_depth_s: &costs_s, give_up_s, attempts_left };
         let choice = memory.choose(self.error, self.place, self.tried, costs);

@@ -55,6 +55,10 @@ pub trait Driven<'p, C> {
     /// What the workcell did otherwise.
     fn execute(&mut self, motion: &Motion) -> Result<(), Fault>;
 
+    /// What was noticed of an error's conditions was taken back: what of them holds still is to be
+    /// noticed again.
+    fn watch_again(&mut self, number: u16);
+
     /// Give the fresh command without which nothing moves after a stop.
     fn release(&mut self);
 }
@@ -120,6 +124,10 @@ impl<'p, C: Workcell> Driven<'p, C> for Direct<'_, 'p, C> {
     fn execute(&mut self, motion: &Motion) -> Result<(), Fault> {
         self.cell.watch(&[]);
         self.cell.execute(motion).map(|_| ())
+    }
+
+    fn watch_again(&mut self, number: u16) {
+        self.cell.watch_again(number);
     }
 
     fn release(&mut self) {

@@ -4,7 +4,7 @@ use crate::driven::Driven;
 use crate::trail::Trail;
 use obverse_bytecode::{FaultName, Module};
 use obverse_isa::ErrorId;
-use obverse_vm::{Direction, Event};
+use obverse_vm::{Direction, Event, Machine};
 use obverse_workcell::{Fault, Workcell};
 
 /// The error that a program says a fault is.
@@ -28,9 +28,21 @@ pub(crate) fn raise<C: Workcell>(
     trail: &mut Trail<'_>,
 ) -> bool {
     let is_raised = driven.raise(error);
-    let machine = driven.machine();
+    if is_raised {
+        note_raised(driven.machine(), pc, trail, driven.cell());
+    }
+    is_raised
+}
+
+/// The act at an instruction, that a fault has ended, counts as done as far as it came.
+pub(crate) fn note_raised(
+    machine: &Machine<'_>,
+    pc: u32,
+    trail: &mut Trail<'_>,
+    cell: &dyn Workcell,
+) {
     let instr = machine.program().module().code.get(pc as usize);
-    if let Some(instr) = instr.filter(|_| is_raised) {
+    if let Some(instr) = instr {
         let state = machine.state();
         let event = Event {
             direction: Direction::Forward,
@@ -43,9 +55,8 @@ pub(crate) fn raise<C: Workcell>(
             frames: state.frames().len(),
             branches: state.branches(),
         };
-        trail.note(&event, driven.cell());
+        trail.note(&event, cell);
     }
-    is_raised
 }
 
 #[cfg(test)]

@@ -12,9 +12,9 @@
 //! next; [`memory`], what was learned of that, with the codes of
 //! what is wrong with its text ([`mod@code`]), and `belief`, what follows; [`foresight`], who would
 //! know better; [`change`], what is done otherwise on the way forward again; [`tell`], what a
-//! person is told, and the tape (`noted`); [`mod@recover`], the loop, and `attempt`, one way
-//! back and
-//! forward again in it.
+//! person is told, and the tape (`noted`); [`recovering`], where a run stands between two looks at
+//! it; [`mod@recover`], the loop, `plan`, what is decided in it, and `attempt`, one way back and
+//! forward again.
 
 mod asked;
 mod attempt;
@@ -32,7 +32,9 @@ pub mod memory;
 mod noted;
 mod passage;
 mod place;
+mod plan;
 pub mod recover;
+pub mod recovering;
 pub mod strategy;
 pub mod tell;
 pub mod trail;
@@ -46,6 +48,7 @@ pub use foresight::Clairvoyant;
 pub use incident::{Attempt, Incident, Outcome, Search};
 pub use memory::{Memory, MemoryError, Subject};
 pub use recover::{Foresight, Recovery, Site, recover, recover_in};
-pub use strategy::{Bounds, Strategy};
+pub use recovering::{Advance, Intended, Intent, Recovering};
+pub use strategy::{Bounds, PERSON_S, Strategy};
 pub use tell::{Operator, Step, Teller, Unattended, Why};
 pub use trail::{Action, Trail};

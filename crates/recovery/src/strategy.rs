@@ -1,5 +1,9 @@
 //! The ways of recovering, and how much may be spent on one error.
 
+/// What it takes a person to put an error right, in seconds: going back is given up where it is
+/// expected to take longer.
+pub const PERSON_S: f64 = 300.0;
+
 /// What is done when an error is due whose recovery is reversal.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Strategy {

@@ -155,6 +155,11 @@ impl<'m> Trail<'m> {
         }
     }
 
+    /// The program.
+    pub(crate) fn module(&self) -> &'m Module {
+        self.module
+    }
+
     /// The actions that can be taken back, newest last.
     #[must_use]
     pub fn actions(&self) -> &[Action] {

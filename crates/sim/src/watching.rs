@@ -82,6 +82,12 @@ impl Watching for Sim {
             self.watched.held = vec![false; watches.len()];
         }
     }
+
+    fn watch_again(&mut self, number: u16) {
+        let watches = self.watched.watches.iter().zip(&mut self.watched.held);
+        let own = watches.filter(|(watch, _)| watch.number == number);
+        own.for_each(|(_, held)| *held = false);
+    }
 }
 
 impl Sim {

@@ -150,6 +150,10 @@ impl Watching for Faulty {
     fn watch(&mut self, watches: &[Watch]) {
         self.sim.watch(watches);
     }
+
+    fn watch_again(&mut self, number: u16) {
+        self.sim.watch_again(number);
+    }
 }
 
 impl Dice for Faulty {

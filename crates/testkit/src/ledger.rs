@@ -254,6 +254,8 @@ impl Watching for Ledger {
     fn watch(&mut self, watches: &[Watch]) {
         self.watches = watches.to_vec();
     }
+
+    fn watch_again(&mut self, _: u16) {}
 }
 
 impl Dice for Ledger {

@@ -144,6 +144,10 @@ impl Watching for Logged {
     fn watch(&mut self, watches: &[Watch]) {
         self.ledger.watch(watches);
     }
+
+    fn watch_again(&mut self, number: u16) {
+        self.ledger.watch_again(number);
+    }
 }
 
 impl Dice for Logged {

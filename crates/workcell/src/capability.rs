@@ -91,6 +91,10 @@ pub trait Watching {
     /// while nobody looked, counts as coming to hold where an act begins; it counts once, until it
     /// has been seen not to hold. Of several at one instant the first of the list is told.
     fn watch(&mut self, watches: &[Watch]);
+
+    /// What was told of the watches of a number has been taken back: those of their conditions that
+    /// hold still count once more, where the next act begins.
+    fn watch_again(&mut self, number: u16);
 }
 
 /// Random numbers for programs. The machine keeps the counter, as part of its state; the workcell

@@ -106,6 +106,8 @@ impl Clock for Shadow {
 
 impl Watching for Shadow {
     fn watch(&mut self, _: &[Watch]) {}
+
+    fn watch_again(&mut self, _: u16) {}
 }
 
 impl Dice for Shadow {

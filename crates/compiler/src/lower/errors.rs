@@ -34,6 +34,13 @@ impl Lower<'_> {
         }
     }
 
+    /// An error is pending no more, if it was: what was not is not told to have been.
+    pub(super) fn clear_if_raised(&mut self, error: ErrorId) {
+        let next = self.unless_raised(error);
+        self.push(Instr::ErrorClear { error });
+        self.join_one(next);
+    }
+
     /// In an advanced move or an I/O operation: it ends here if its act has been ended by an error
     /// that its caller responds to now, and does more than note it.
     pub(super) fn end_if_raised(&mut self, raised: &[ErrorId]) {
@@ -96,13 +103,11 @@ impl Lower<'_> {
 
     fn respond(&mut self, error: ErrorId, site: &mut Site, is_thrown: bool) {
         let response = self.effects.response(error);
+        let next = (!is_thrown).then(|| self.unless_raised(error));
         if response == Response::Ignore {
-            return self.push(Instr::ErrorClear { error });
+            self.push(Instr::ErrorClear { error });
+            return next.into_iter().for_each(|next| self.join_one(next));
         }
-        let next = (!is_thrown).then(|| {
-            self.push(Instr::PushRaised { error });
-            self.code.jump(|target| Instr::JumpUnless { prefix: PREFIX, target })
-        });
         self.push(Instr::ErrorDue { error });
         match (response, self.continuation(error)) {
             (Response::Recover { using, .. }, Some(then)) => {
@@ -111,6 +116,12 @@ impl Lower<'_> {
             _ => self.give_up(Way::Out),
         }
         next.into_iter().for_each(|next| self.join_one(next));
+    }
+
+    /// A jump that is taken unless an error is pending.
+    pub(super) fn unless_raised(&mut self, error: ErrorId) -> Mark {
+        self.push(Instr::PushRaised { error });
+        self.code.jump(|target| Instr::JumpUnless { prefix: PREFIX, target })
     }
 
     fn recover(
@@ -204,7 +215,7 @@ impl Lower<'_> {
         }
         for &error in self.effects.left_by(function) {
             if self.effects.response(error) == Response::Ignore {
-                self.push(Instr::ErrorClear { error });
+                self.clear_if_raised(error);
             } else {
                 self.push(Instr::PushRaised { error });
                 failed.push(self.code.jump(|target| Instr::JumpIf { prefix: PREFIX, target }));

@@ -82,7 +82,7 @@ impl<'p> Lower<'p> {
         self.push(Instr::Call { prefix: PREFIX, function });
         for &error in self.effects.left_by(function) {
             if self.effects.response(error) == Response::Ignore {
-                self.push(Instr::ErrorClear { error });
+                self.clear_if_raised(error);
             }
         }
         for (error, local) in pending {
@@ -111,7 +111,7 @@ impl<'p> Lower<'p> {
         not_again.push(self.code.jump(|target| test.to(target)));
         self.push(Instr::AddLocalImmediate { local: rounds, value: 1 });
         for error in errors {
-            self.push(Instr::ErrorClear { error });
+            self.clear_if_raised(error);
         }
         self.set_flag(restart, false);
         if let Some(leaving) = self.globals.leaving {

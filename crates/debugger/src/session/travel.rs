@@ -6,19 +6,14 @@
 
 use super::{Declined, Session, look_at};
 use crate::breakpoint::{Before, Breakpoint, Hit};
-use crate::drive::Pace;
 use crate::place::is_at_statement;
-use crate::recording::{Moment, Order};
+use crate::recording::Moment;
 use crate::rewound::{Halted, Rewound};
 use obverse_bytecode::Module;
-use obverse_vm::{Direction, Machine, Refusal, State, Stop, Stops, can_stop_at};
+use obverse_recovery::{Advance, Ending};
+use obverse_vm::{Direction, Refusal, State, Stop, Stops, can_stop_at};
 use obverse_workcell::Workcell;
 use std::sync::atomic::Ordering;
-
-/// How many instructions a live run makes at once, at the most: as often it can be interrupted.
-const BURST: u64 = 1 << 18;
-/// The same where it commands the workcell, which takes longer.
-const SLOW_BURST: u64 = 256;
 
 /// How long a step is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -40,6 +35,8 @@ pub enum Walk {
     Finish,
     /// Until something stops it.
     Continue,
+    /// Until the run is past the error that is due, or it is given up.
+    Recover,
 }
 
 /// Why a command came to its end.
@@ -51,6 +48,10 @@ pub enum Halt {
     Hits(Vec<Hit>),
     /// The machine or the workcell.
     Stopped(Stop),
+    /// The run has ended in something else than where the machine stands.
+    Ended(Ending),
+    /// The arm is held: nothing moves before a person's command, and nothing has.
+    Held,
     /// Live, it would go back over a variable that was changed by hand.
     Changed,
     /// The end of what is recorded.
@@ -99,7 +100,7 @@ impl Origin {
             Walk::Step(grain) => is_at(grain),
             Walk::Next(grain) => depth <= self.depth && is_at(grain),
             Walk::Finish => depth < self.depth && state.operands().is_empty(),
-            Walk::Continue => false,
+            Walk::Continue | Walk::Recover => false,
         }
     }
 
@@ -107,7 +108,7 @@ impl Origin {
     fn stops(self, module: &Module, state: &State, stops: Option<&Stops>) -> Option<Stops> {
         let stops = stops?;
         let depth = match self.walk {
-            Walk::Continue => return Some(stops.clone()),
+            Walk::Continue | Walk::Recover => return Some(stops.clone()),
             Walk::Step(_) => return None,
             Walk::Next(_) => self.depth,
             Walk::Finish => self.depth.checked_sub(1)?,
@@ -139,6 +140,9 @@ impl<'p, C: Workcell> Session<'p, C> {
     }
 
     fn go_live(&mut self, direction: Direction, walk: Walk) -> Halt {
+        if direction == Direction::Forward && self.is_held() {
+            return Halt::Held;
+        }
         let module = self.module();
         let origin = Origin::of(walk, self.run.machine().state());
         let all = self.stops();
@@ -160,18 +164,20 @@ impl<'p, C: Workcell> Session<'p, C> {
                 depth = state.frames().len();
                 stops = origin.stops(module, state, all.as_ref());
             }
-            let before = self.look(|look| Before::of(&self.breakpoints, look));
-            let stop = self.hop(direction, stops.as_ref());
-            let hits = self.hits(&before, direction);
-            if let Some(stop) = stop.filter(|stop| !matches!(stop, Stop::Raised { .. })) {
-                return Halt::Stopped(stop);
+            if let Some(halt) = self.hop(direction, walk, stops.as_ref()) {
+                return halt;
             }
-            if !hits.is_empty() {
-                return Halt::Hits(hits);
-            }
-            if origin.is_there(module, self.run.machine().state()) {
+            if self.is_there(origin) {
                 return Halt::Done;
             }
+        }
+    }
+
+    /// Whether a walk of the live run is where it was to go.
+    fn is_there(&self, origin: Origin) -> bool {
+        match origin.walk {
+            Walk::Recover => !self.is_recovering(),
+            _ => origin.is_there(self.module(), self.run.machine().state()),
         }
     }
 
@@ -181,34 +187,52 @@ impl<'p, C: Workcell> Session<'p, C> {
         self.run.changed_at().is_some_and(|changed| steps <= changed)
     }
 
-    /// Live, to the next place that may matter.
-    fn hop(&mut self, direction: Direction, stops: Option<&Stops>) -> Option<Stop> {
-        let order = match direction {
-            Direction::Forward => Order::Forward,
-            Direction::Reverse => Order::Reverse,
-        };
-        let is_at_stop =
-            |machine: &Machine<'_>| stops.is_some_and(|stops| stops.has(machine.state().pc()));
-        let mut most = BURST;
+    /// Live, to the next place that may matter: why that is the end of the walk, if it is.
+    fn hop(&mut self, direction: Direction, walk: Walk, stops: Option<&Stops>) -> Option<Halt> {
         loop {
-            let frames = self.run.recording().log.frames.len();
-            let pace = match stops {
-                Some(stops) if direction == Direction::Forward => {
-                    let machine = self.run.machine();
-                    let is_close = is_at_stop(machine) || machine.state().is_compensating();
-                    if is_close { Pace::Step } else { Pace::To(stops, most) }
+            let before = self.look(|look| Before::of(&self.breakpoints, look));
+            let moment = self.run.recording().end;
+            let (way, halt) = match direction {
+                Direction::Forward => {
+                    let way = self.direction();
+                    (way, self.advance(stops).and_then(|advance| self.halt_of(advance, walk)))
                 }
-                _ => Pace::Step,
+                Direction::Reverse => (direction, self.take_back().map(Halt::Stopped)),
             };
-            let is_step = matches!(pace, Pace::Step);
-            let driven = self.run.drive(order, pace, &mut *self.observer)?;
-            let is_interrupted = self.interrupt.load(Ordering::Relaxed);
-            if driven.stop.is_some() || is_step || is_interrupted || is_at_stop(self.run.machine())
-            {
-                return driven.stop;
+            // Where nothing was done, nothing is come to.
+            let has_moved = self.run.recording().end > moment;
+            let hits = if has_moved { self.hits(&before, way) } else { Vec::new() };
+            if halt.is_some() {
+                return halt;
             }
-            most = if self.run.recording().log.frames.len() > frames { SLOW_BURST } else { BURST };
+            if !hits.is_empty() {
+                return Some(Halt::Hits(hits));
+            }
+            if has_moved {
+                return None;
+            }
         }
+    }
+
+    /// Why a walk ends with what came of going on, if it does.
+    fn halt_of(&self, advance: Advance, walk: Walk) -> Option<Halt> {
+        let stop = match advance {
+            Advance::On => return None,
+            Advance::Stopped(stop) => stop,
+            Advance::Ended(Ending::Finished | Ending::Unhandled(_)) => Stop::Finished,
+            Advance::Ended(Ending::Fault { fault, pc, direction }) => {
+                Stop::Fault { fault, pc, direction }
+            }
+            Advance::Ended(Ending::Trap(trap)) => Stop::Trap(trap),
+            Advance::Ended(ending) => return Some(Halt::Ended(ending)),
+        };
+        // A recovery goes on by itself wherever it can.
+        let goes_on = match &stop {
+            Stop::Due { .. } => true,
+            Stop::Fault { .. } => self.is_recovering() && !self.is_held(),
+            _ => false,
+        };
+        (walk != Walk::Recover || !goes_on).then_some(Halt::Stopped(stop))
     }
 
     /// The breakpoints that are come to here.

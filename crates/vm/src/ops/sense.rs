@@ -4,6 +4,7 @@ use super::acts::Acts;
 use crate::class::{AfterForward, Failure};
 use obverse_isa::op;
 use obverse_tape::record::{Joints, Word};
+use obverse_workcell::Fault;
 
 /// Readings into a local: what is read.
 macro_rules! readings {
@@ -54,9 +55,21 @@ fn wait_for(acts: &mut Acts<'_>, op: op::WaitInput) -> Result<bool, Failure> {
             return Ok(true);
         }
         let left_s = longest_s - poll as f64 * POLL_S;
-        acts.wait(left_s.clamp(0.0, POLL_S))?;
+        let waited = acts.wait(left_s.clamp(0.0, POLL_S));
+        waited.map_err(|failure| of_all(failure, poll, polls))?;
     }
     Ok(acts.cell.input(op.bit.0)? == op.level.is_high())
+}
+
+/// What happened between two looks, after a fraction of all that is waited for at the most.
+fn of_all(failure: Failure, poll: u64, polls: u64) -> Failure {
+    match failure {
+        Failure::Fault(Fault::Watched { watch, fraction }) => {
+            let fraction = (poll as f64 + fraction) / polls as f64;
+            Failure::Fault(Fault::Watched { watch, fraction })
+        }
+        other => other,
+    }
 }
 
 impl AfterForward<Acts<'_>> for op::Draw {

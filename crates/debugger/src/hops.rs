@@ -1,0 +1,158 @@
+//! A live run as a recovery drives it: recorded, and hop by hop, so that between any two of them it
+//! can be looked at and halted. What is decided in a recovery is not known here.
+
+use crate::drive::{Driven, Pace};
+use crate::recording::Order;
+use crate::run::{Live, Run};
+use obverse_isa::ErrorId;
+use obverse_recovery as recovery;
+use obverse_tape::Note;
+use obverse_vm::{Alteration, Direction, Machine, Mark, Observer, Stop, Stops};
+use obverse_workcell::{Arm, Fault, Motion, Watching, Workcell};
+use std::sync::atomic::{AtomicBool, Ordering};
+
+/// How many instructions a live run makes at once, at the most: as often it can be interrupted.
+const BURST: u64 = 1 << 18;
+/// The same where it commands the workcell, which takes longer.
+const SLOW_BURST: u64 = 256;
+
+/// A live run, driven hop by hop: a run forward comes back at a stop, a run in reverse behind
+/// every step, as if as many instructions had been made as were allowed.
+pub(crate) struct Hops<'r, 'p, C> {
+    live: Live<'r, 'p, C>,
+    /// Where a hop forward ends; none if everywhere.
+    stops: Option<&'r Stops>,
+    /// Raised, it ends a hop.
+    interrupt: &'r AtomicBool,
+}
+
+impl<'r, 'p, C: Workcell> Hops<'r, 'p, C> {
+    /// Of a run; none of a recording.
+    pub(crate) fn of(
+        run: &'r mut Run<'p, C>,
+        stops: Option<&'r Stops>,
+        interrupt: &'r AtomicBool,
+    ) -> Option<Self> {
+        run.live().map(|live| Self { live, stops, interrupt })
+    }
+
+    fn drive(&mut self, order: Order, pace: Pace<'_>, observer: &mut dyn Observer) -> Driven {
+        self.live.drive(order, pace, observer)
+    }
+
+    /// Whether something was done by an order that takes one step.
+    fn does(&mut self, order: Order) -> bool {
+        self.drive(order, Pace::Step, &mut ()).ticks > 0
+    }
+
+    fn is_at_stop(&self) -> bool {
+        let pc = self.live.past.machine.state().pc();
+        self.stops.is_some_and(|stops| stops.has(pc))
+    }
+
+    fn forward(&mut self, observer: &mut dyn Observer) -> Stop {
+        let mut most = BURST;
+        loop {
+            let commands = self.live.past.recording.log.frames.len();
+            let is_close = self.is_at_stop() || self.live.past.machine.state().is_compensating();
+            let pace = match self.stops {
+                Some(stops) if !is_close => Pace::To(stops, most),
+                _ => Pace::Step,
+            };
+            let is_step = matches!(pace, Pace::Step);
+            let driven = self.drive(Order::Forward, pace, observer);
+            if let Some(stop) = driven.stop {
+                return stop;
+            }
+            if is_step || self.interrupt.load(Ordering::Relaxed) || self.is_at_stop() {
+                return Stop::Budget;
+            }
+            let is_slow = self.live.past.recording.log.frames.len() > commands;
+            most = if is_slow { SLOW_BURST } else { BURST };
+        }
+    }
+
+    /// Where a machine is that goes back to a mark, if it is there, or past it.
+    fn at(&self, mark: Mark) -> Option<Stop> {
+        let state = self.live.past.machine.state();
+        match state.steps() == mark.steps() {
+            _ if state.steps() > mark.steps() || state.is_compensating() => None,
+            true => Some(Stop::AtMark),
+            false => Some(Stop::OffMark),
+        }
+    }
+}
+
+impl<'p, C: Workcell> recovery::Driven<'p, C> for Hops<'_, 'p, C> {
+    fn machine(&self) -> &Machine<'p> {
+        &self.live.past.machine
+    }
+
+    fn cell(&self) -> &C {
+        self.live.cell
+    }
+
+    fn run(&mut self, direction: Direction, _: u64, observer: &mut dyn Observer) -> Stop {
+        match direction {
+            Direction::Forward => self.forward(observer),
+            Direction::Reverse => {
+                self.drive(Order::Reverse, Pace::Step, observer).stop.unwrap_or(Stop::Budget)
+            }
+        }
+    }
+
+    fn step(&mut self, observer: &mut dyn Observer) -> Result<(), Stop> {
+        self.drive(Order::Forward, Pace::Step, observer).stop.map_or(Ok(()), Err)
+    }
+
+    fn reverse_to(&mut self, mark: Mark, observer: &mut dyn Observer) -> Stop {
+        if let Some(there) = self.at(mark) {
+            return there;
+        }
+        let stop = self.drive(Order::Reverse, Pace::Step, observer).stop;
+        stop.or_else(|| self.at(mark)).unwrap_or(Stop::Budget)
+    }
+
+    fn unwind_to(&mut self, mark: Mark) -> Result<(), Stop> {
+        while self.live.past.machine.state().steps() > mark.steps() {
+            let stop = self.drive(Order::Unwind, Pace::Step, &mut ()).stop;
+            stop.map_or(Ok(()), Err)?;
+        }
+        Ok(())
+    }
+
+    fn alter(&mut self, alteration: Option<Alteration>) {
+        self.drive(Order::Alter(alteration), Pace::Step, &mut ());
+    }
+
+    fn raise(&mut self, error: ErrorId) -> bool {
+        self.does(Order::Raise(error))
+    }
+
+    fn pass_over_fault(&mut self) -> bool {
+        self.does(Order::PassOver)
+    }
+
+    fn leave(&mut self) -> bool {
+        self.does(Order::Leave)
+    }
+
+    fn note(&mut self, note: Note) {
+        self.live.note(note);
+    }
+
+    fn execute(&mut self, motion: &Motion) -> Result<(), Fault> {
+        self.live.beside(|recorder| {
+            recorder.watch(&[]);
+            recorder.execute(motion).map(|_| ())
+        })
+    }
+
+    fn watch_again(&mut self, number: u16) {
+        self.live.beside(|recorder| recorder.watch_again(number));
+    }
+
+    fn release(&mut self) {
+        self.live.release();
+    }
+}
