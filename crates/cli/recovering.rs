@@ -1,24 +1,23 @@
 //! Recoveries at the edge: the strategy that was asked for, the memory on disk, a person at the
-//! terminal, and the story of a recovery in words and for machines.
+//! terminal, and the story of a recovery for people and for machines.
 
 use crate::load::Program;
 use crate::problem::{Message, Problem};
 use crate::report::{self, Report};
-use crate::story::{self, Story};
+use crate::story::Story;
 use crate::{files, write};
 use obverse_bytecode::Module;
 use obverse_recovery::{
-    GiveUp, Incident, Memory, MemoryCode, Operator, Outcome, Step, Strategy, Subject, Teller, Why,
+    Incident, Memory, MemoryCode, Operator, Outcome, Step, Strategy, Subject, Teller,
 };
-use obverse_vm::Alteration;
 use obverse_workcell::{Fault, Workcell};
 use serde_json::{Value, json};
 use std::io::{self, BufRead, IsTerminal, Write};
 use std::path::{Path, PathBuf};
 
-/// What a command that runs a program is told of recoveries.
+/// What a command that runs a program is told of recoveries, a person being there.
 #[derive(clap::Args)]
-pub(crate) struct RecoveryArguments {
+pub(crate) struct PolicyArguments {
     /// How errors are recovered from whose recovery is reversal: declared, stop, retry, back-up,
     /// restart, explicit, fixed:N, escalating, learned.
     #[arg(long, default_value = "declared", value_name = "STRATEGY", value_parser = strategy)]
@@ -26,6 +25,13 @@ pub(crate) struct RecoveryArguments {
     /// What is learned of how far to go back, kept from run to run in a file that can be read.
     #[arg(long, value_name = "FILE")]
     pub(crate) memory: Option<PathBuf>,
+}
+
+/// The same, where nobody need be.
+#[derive(clap::Args)]
+pub(crate) struct RecoveryArguments {
+    #[command(flatten)]
+    pub(crate) policy: PolicyArguments,
     /// How often a stopped arm is released without asking: the fresh command that it waits for.
     #[arg(long, default_value_t = 0, value_name = "N")]
     pub(crate) release: u32,
@@ -147,7 +153,7 @@ impl Operator for Terminal {
 impl Teller for Story<'_> {
     fn on_step(&mut self, step: &Step<'_>, cell: &dyn Workcell) {
         self.tell_headings();
-        let text = words(self.module(), step);
+        let text = obverse_recovery::words(self.module(), step);
         write::line(&format!("{:>7.2} s ! {text}", cell.now_s()));
     }
 }
@@ -157,7 +163,7 @@ impl Teller for Report<'_> {
         let mut object = json!({
             "type": "recovery",
             "step": code(step),
-            "text": words(self.module(), step),
+            "text": obverse_recovery::words(self.module(), step),
             "time_s": cell.now_s(),
         });
         for (key, value) in details(self.module(), step) {
@@ -199,7 +205,9 @@ fn details(module: &Module, step: &Step<'_>) -> Vec<(&'static str, Value)> {
             vec![("fault", json!(fault.kind().code())), ("at", report::place(module, Some(*pc)))]
         }
         Step::GivenUp { why, .. } => vec![("why", json!(why.code()))],
-        Step::Again { change: Some(change), .. } => vec![("change", json!(changed(*change)))],
+        Step::Again { change: Some(change), .. } => {
+            vec![("change", json!(obverse_recovery::changed(*change)))]
+        }
         Step::Again { .. } | Step::Released | Step::Recovered { .. } | Step::Operator { .. } => {
             Vec::new()
         }
@@ -215,109 +223,11 @@ fn details(module: &Module, step: &Step<'_>) -> Vec<(&'static str, Value)> {
         | Step::Operator { incident } => incident,
         Step::Fault { .. } | Step::PassedOver { .. } | Step::Released => return details,
     };
-    details.push(("error", json!(name(module, incident))));
+    details.push(("error", json!(obverse_recovery::name(module, incident))));
     details.push(("place", json!(incident.place)));
     details.push(("attempts", json!(incident.attempts.len())));
     details.push(("due", report::place(module, Some(incident.pc))));
     details
-}
-
-fn name<'m>(module: &'m Module, incident: &Incident) -> &'m str {
-    &module.errors[incident.error.index()].name
-}
-
-/// A step of a recovery in words.
-fn words(module: &Module, step: &Step<'_>) -> String {
-    match step {
-        Step::Fault { fault, pc, error } => {
-            let error = &module.errors[error.index()].name;
-            format!("{} is error {error}: {fault}", report::line_of(module, *pc))
-        }
-        Step::PassedOver { fault, pc } => {
-            format!("the cleanup goes on behind {}: {fault}", report::line_of(module, *pc))
-        }
-        Step::Released => "released by hand".to_owned(),
-        Step::Back { incident, actions, to, why } => {
-            let to = format!("`{}` ({})", story::said(module, *to), report::line_of(module, *to));
-            let far = counted(*actions, "action");
-            format!("{}: back {far}, to {to}{}", name(module, incident), reason(*why))
-        }
-        Step::RoundTrip { pc, .. } => {
-            format!("`{}` ended where it began: nothing to undo", story::said(module, *pc))
-        }
-        Step::InPlace { incident, backed_up_m: None } => {
-            format!("{}: again from where the arm is", name(module, incident))
-        }
-        Step::InPlace { incident, backed_up_m: Some(distance_m) } => {
-            let far_mm = distance_m * 1e3;
-            format!("{}: backed up {far_mm:.0} mm, and again", name(module, incident))
-        }
-        Step::Blocked { pc, fault, .. } => {
-            let place = report::line_of(module, *pc);
-            format!("the way back is blocked at {place}: {fault}")
-        }
-        Step::Again { incident, change } => {
-            let how = change.map(|change| format!(", {}", changed(change))).unwrap_or_default();
-            format!("forward again, attempt {}{how}", incident.attempts.len())
-        }
-        Step::Recovered { incident } => {
-            let tried = counted(incident.attempts.len(), "attempt");
-            let took_s = incident.duration_s().unwrap_or(0.0);
-            let far = incident.depth_enough().filter(|&actions| actions > 0);
-            let far = far.map(|actions| format!(", {} back", counted(actions, "action")));
-            let far = far.unwrap_or_default();
-            format!("past {} after {tried}{far}, {took_s:.2} s", name(module, incident))
-        }
-        Step::GivenUp { incident, why: GiveUp::Explicit } => {
-            let sequence = obverse_recovery::sequence(&module.errors[incident.error.index()]);
-            let function = sequence.and_then(|sequence| module.functions.get(sequence.index()));
-            let sequence = function.map_or("", |function| &function.name);
-            format!("{}: as the program says, {sequence}", name(module, incident))
-        }
-        Step::GivenUp { incident, why } => {
-            format!("{} is given up: {why}", name(module, incident))
-        }
-        Step::Operator { incident } => {
-            format!("an operator is called: {} at {}", name(module, incident), incident.place)
-        }
-    }
-}
-
-fn reason(why: Why) -> String {
-    match why {
-        Why::Said | Why::Place => String::new(),
-        Why::Further => ", further than before".to_owned(),
-        Why::Learned { known: 0, chance, .. } => {
-            format!(": nothing is known here yet, and {:.0} % believed", chance * 1e2)
-        }
-        Why::Learned { chance, expected_s, known } => format!(
-            ": enough with {:.0} %, {expected_s:.1} s expected, from {}",
-            chance * 1e2,
-            counted(known as usize, "incident")
-        ),
-        Why::AsFarAsPossible => ", as far as can be taken back".to_owned(),
-        Why::Foreseen => ", which will be enough".to_owned(),
-    }
-}
-
-/// What is done otherwise, in words.
-fn changed(change: Alteration) -> String {
-    let mut parts = Vec::new();
-    if let Some(aside) = change.aside {
-        let [x, y] = aside.by_m;
-        parts.push(format!("{:.2} mm aside", x.hypot(y) * 1e3));
-    }
-    if change.slower > 0 {
-        parts.push("slower".to_owned());
-    }
-    if let Some(factor) = change.force_factor {
-        parts.push(format!("with {:.0} % of the force", factor * 1e2));
-    }
-    parts.join(", ")
-}
-
-fn counted(count: usize, what: &str) -> String {
-    if count == 1 { format!("1 {what}") } else { format!("{count} {what}s") }
 }
 
 /// The incidents of a run for machines.
@@ -330,7 +240,7 @@ pub(crate) fn incidents(module: &Module, incidents: &[Incident]) -> Value {
             None => "open",
         };
         json!({
-            "error": name(module, incident),
+            "error": obverse_recovery::name(module, incident),
             "place": incident.place,
             "outcome": outcome,
             "depths": incident.depths(),

@@ -2,6 +2,7 @@
 
 use crate::problem::Problem;
 use crate::{show, story, write};
+pub(crate) use obverse_bytecode::text::line_of;
 use obverse_bytecode::{Module, Places};
 use obverse_recovery::Ending;
 use obverse_vm::{Direction, Event, Machine, Observer, Trap, TrapKind};
@@ -202,12 +203,6 @@ pub(crate) fn ending_words(module: &Module, ending: &Ending) -> String {
             format!("trap: {}: {}", statement(module, trap.pc), why(module, trap))
         }
     }
-}
-
-/// Where an instruction was written: `peg_in_hole.obv:42`.
-pub(crate) fn line_of(module: &Module, pc: u32) -> String {
-    let place = module.place_of(pc);
-    place.map_or_else(|| format!("instruction {pc}"), |(file, line, _)| format!("{file}:{line}"))
 }
 
 /// Where an instruction was written, and what stands there.

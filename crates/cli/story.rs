@@ -4,13 +4,13 @@
 //! Knows the words; what happened it is told by the machine, event by event.
 
 use crate::write;
+use obverse_bytecode::text::SAID_COLUMNS;
+pub(crate) use obverse_bytecode::text::said;
 use obverse_bytecode::{Continuation, FunctionKind, Module, Severity};
 use obverse_isa::{ErrorId, FunctionId, Instr, Level, Setting};
 use obverse_vm::{Direction, Event, Observer};
 use obverse_workcell::{MotionEnd, MotionReport, Workcell};
 
-/// How wide the column of what the program says is.
-const TEXT_COLUMNS: usize = 52;
 /// Deeper calls than these are not set in further.
 const DEPTH_MAX: usize = 10;
 
@@ -75,7 +75,7 @@ impl Told {
         let indent = "  ".repeat(self.depth.saturating_sub(2).min(DEPTH_MAX));
         let text = format!("{}{indent}{}", mark(&self.branches), self.text);
         let time = format!("{:.2} s", self.time_s);
-        let line = format!("{time:>9} {arrow} {text:<TEXT_COLUMNS$} {}", self.outcome);
+        let line = format!("{time:>9} {arrow} {text:<SAID_COLUMNS$} {}", self.outcome);
         write::line(line.trim_end());
     }
 }
@@ -154,22 +154,6 @@ fn kind_word(kind: FunctionKind) -> &'static str {
         FunctionKind::Replacement => "block",
         FunctionKind::Cleanup => "cleanup",
     }
-}
-
-/// What the program says at an instruction, on one line.
-pub(crate) fn said(module: &Module, pc: u32) -> String {
-    let entry = module.source_at(pc);
-    let text = entry.and_then(|entry| {
-        let file = module.sources.get(usize::from(entry.file))?;
-        file.text.get(entry.start as usize..entry.end as usize)
-    });
-    let Some(text) = text else {
-        return obverse_bytecode::text::instruction(module, pc).unwrap_or_default();
-    };
-    let line = text.lines().next().unwrap_or("").trim();
-    let words: Vec<&str> = line.split_whitespace().collect();
-    let short: String = words.join(" ").chars().take(TEXT_COLUMNS).collect();
-    short.trim_end_matches(['{', ' ']).to_owned()
 }
 
 /// What the program says at an event, or what it means there: the moves around an advanced move

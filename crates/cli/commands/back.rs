@@ -18,7 +18,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result {
     let (mut cell, file) = run::workcell(arguments, &program)?;
     let mut machine = load::machine(&program, &cell, &file)?;
     let module = program.verified.module();
-    let kept = Kept::read(arguments.recovering.memory.as_deref(), &program, &file.name)?;
+    let kept = Kept::read(arguments.recovering.policy.memory.as_deref(), &program, &file.name)?;
     let mut memory = kept.memory();
     let mut tape = taping::create(arguments.tape.as_deref())?;
     let start = machine.digest(&cell);

@@ -5,10 +5,11 @@ use crate::debug::{Face, Front, Lines};
 use crate::load;
 use crate::parameters::ParameterArguments;
 use crate::problem::{Problem, plain};
+use crate::recovering::{Kept, PolicyArguments};
 use crate::report::Report;
 use crate::story::Story;
 use crate::{Outcome, lacking, taping, write};
-use obverse_debugger::{Run, Session};
+use obverse_debugger::{Policy, Run, Session};
 use obverse_sim::Sim;
 use serde_json::json;
 use signal_hook::consts::SIGINT;
@@ -39,6 +40,8 @@ pub(crate) struct Arguments {
     limit: u64,
     #[command(flatten)]
     parameters: ParameterArguments,
+    #[command(flatten)]
+    policy: PolicyArguments,
     /// For machines: JSON Lines, an object an event and an answer a command, a summary last.
     #[arg(long)]
     pub(crate) json: bool,
@@ -54,7 +57,14 @@ pub(crate) fn run(arguments: &Arguments) -> Result {
 
 fn live(arguments: &Arguments, file: &Path) -> Result {
     let program = load::program_with(file, &arguments.parameters.parameters)?;
-    let (cell, cell_file) = load::workcell(&program, arguments.cell.as_deref(), arguments.seed)?;
+    let named = arguments.cell.as_deref();
+    if let Some(memory) = &arguments.policy.memory {
+        let cell = load::workcell_path(&program, named);
+        let inputs: Vec<PathBuf> = program.files().into_iter().chain(cell).collect();
+        write::check_text(memory, "memory", &inputs)?;
+    }
+    let (cell, cell_file) = load::workcell(&program, named, arguments.seed)?;
+    let kept = Kept::read(arguments.policy.memory.as_deref(), &program, &cell_file.name)?;
     let lines = Lines::of(arguments.commands.as_deref(), arguments.json)?;
     let run = Run::new(&program.verified, cell)
         .map_err(|errors| Problem::several(lacking::messages(&program, &cell_file, &errors)))?;
@@ -62,7 +72,7 @@ fn live(arguments: &Arguments, file: &Path) -> Result {
         let name = file.display();
         write::line(&format!("{name} in {}, seed {}", cell_file.name, arguments.seed));
     }
-    converse(arguments, run.simulated(None), lines)
+    converse(arguments, run.simulated(None), Some(&kept), lines)
 }
 
 /// A run as its tape tells it. What would have been can be tried where its workcell is to be had.
@@ -97,7 +107,7 @@ fn post_mortem(arguments: &Arguments, tape: &Path, file: Option<&Path>) -> Resul
         write::line(&opened.ending());
         opened.lacks(lacks.as_ref()).iter().for_each(|text| write::line(text));
     }
-    converse(arguments, run.simulated(start), lines)
+    converse(arguments, run.simulated(start), None, lines)
 }
 
 /// The first Ctrl-C halts the command under way, between instructions; where it has found nothing
@@ -110,7 +120,12 @@ fn interrupt(session: &Session<'_, Sim>) -> std::result::Result<(), Problem> {
         .map_err(|error| Problem::new(format!("Ctrl-C cannot be heard: {}", plain(&error))))
 }
 
-fn converse(arguments: &Arguments, run: Run<'_, Sim>, mut lines: Lines) -> Result {
+fn converse(
+    arguments: &Arguments,
+    run: Run<'_, Sim>,
+    kept: Option<&Kept>,
+    mut lines: Lines,
+) -> Result {
     let mut session = Session::over(run);
     let module = session.module();
     session.limit(arguments.limit);
@@ -119,7 +134,10 @@ fn converse(arguments: &Arguments, run: Run<'_, Sim>, mut lines: Lines) -> Resul
         true => Box::new(Report::new(module)),
         false => Box::new(Story::new(module)),
     });
+    let policy = Policy { strategy: arguments.policy.strategy, ..Policy::declared(arguments.seed) };
+    session.recover_by(policy, kept.map(Kept::memory).unwrap_or_default());
     let mut front = Front::over(session, Face::of(arguments.json));
     let failed = front.converse(&mut lines)?;
+    kept.map_or(Ok(()), |kept| kept.keep(front.memory()))?;
     Ok(if failed == 0 || lines.is_terminal() { Outcome::Done } else { Outcome::EndedOtherwise })
 }

@@ -10,16 +10,14 @@ use crate::report::{self, Report};
 use crate::story::Story;
 use crate::taping::{self, Rig};
 use crate::{Outcome, show, write};
-use obverse_recovery::{Bounds, Driven, Ending, Incident, Memory, Recovery, drive_in, recover_in};
+use obverse_recovery::{
+    Bounds, Driven, Ending, Incident, Memory, PERSON_S, Recovery, drive_in, recover_in,
+};
 use obverse_sim::{Missed, Sim};
 use obverse_vm::{Direction, Limits, Machine};
 use obverse_workcell::{Clock, Safety};
 use serde_json::{Map, json};
 use std::path::PathBuf;
-
-/// What it takes a person to put an error right, in seconds: going back is given up where it is
-/// expected to take longer.
-const PERSON_S: f64 = 300.0;
 
 #[derive(clap::Args)]
 pub(crate) struct Arguments {
@@ -67,7 +65,7 @@ pub(crate) fn run(arguments: &RunArguments) -> Result {
     let program = load::program_with(&arguments.file, &arguments.parameters.parameters)?;
     let (mut cell, file) = workcell(arguments, &program)?;
     let mut machine = load::machine(&program, &cell, &file)?;
-    let kept = Kept::read(arguments.recovering.memory.as_deref(), &program, &file.name)?;
+    let kept = Kept::read(arguments.recovering.policy.memory.as_deref(), &program, &file.name)?;
     let mut memory = kept.memory();
     let mut tape = taping::create(arguments.tape.as_deref())?;
     let mut rig = Rig::of(arguments, &program, (&mut machine, &mut cell), tape.as_mut())?;
@@ -107,7 +105,7 @@ pub(crate) fn workcell(
         write::check(tape, "tape", &inputs)?;
         inputs.push(tape.clone());
     }
-    if let Some(memory) = &arguments.recovering.memory {
+    if let Some(memory) = &arguments.recovering.policy.memory {
         write::check_text(memory, "memory", &inputs)?;
     }
     let (mut sim, file) = load::workcell(program, named, arguments.seed)?;
@@ -134,7 +132,7 @@ pub(crate) fn there(
     let module = driven.machine().program().module();
     let limits = Limits::instructions(arguments.limit);
     let mut recovery = Recovery {
-        strategy: arguments.recovering.strategy,
+        strategy: arguments.recovering.policy.strategy,
         bounds: Bounds::default(),
         memory,
         remembers: true,

@@ -1,11 +1,12 @@
 //! The debugger at a terminal: commands in words, answers in words or as JSON Lines.
 //!
-//! Reading order: [`table`], the commands; [`lines`], where they come from; `walk`, `stops`,
-//! `values`, `code` and `tries`, what each does with the session; `complete`, what the line editor
+//! Reading order: [`table`], the commands; [`lines`], where they come from; `walk`, `errors`,
+//! `stops`, `values`, `code` and `tries`, what each does with the session; `complete`, what the line editor
 //! offers. It knows words and columns, and nothing of how a moment is reached.
 
 mod code;
 mod complete;
+mod errors;
 mod lines;
 mod stops;
 mod table;
@@ -17,10 +18,11 @@ pub(crate) use lines::Lines;
 
 use crate::commands::reach::margin::Margin;
 use crate::problem::Problem;
-use crate::{show, write};
+use crate::{recovering, show, write};
 use lines::Line;
 use obverse_bytecode::Module;
 use obverse_debugger::{Position, Session};
+use obverse_recovery::Memory;
 use obverse_sim::Sim;
 use serde_json::{Map, Value, json};
 
@@ -84,6 +86,11 @@ impl<'p> Front<'p> {
         Self { session, module, margin, face, listed: None, is_over: false }
     }
 
+    /// What was learned of errors.
+    pub(crate) fn memory(&self) -> &Memory {
+        self.session.memory()
+    }
+
     /// Carry out commands until there are no more. How many were not.
     ///
     /// # Errors
@@ -117,6 +124,8 @@ impl<'p> Front<'p> {
                 "outcome": "left",
                 "carried_out": carried_out,
                 "failed": failed,
+                "held": self.session.is_held(),
+                "incidents": recovering::incidents(self.module, self.session.incidents()),
                 "position": position(&self.session.position()),
             });
             write::line(&summary.to_string());

@@ -1,6 +1,6 @@
 //! The commands as data: their names, what may follow them, and what `help` says.
 
-use super::{Answer, Done, Front, code, stops, tries, values, walk};
+use super::{Answer, Done, Front, code, errors, stops, tries, values, walk};
 use obverse_bytecode::text::nearest;
 use obverse_debugger::{Grain, Walk};
 use obverse_vm::Direction::{Forward, Reverse};
@@ -93,7 +93,9 @@ pub(super) const COMMANDS: &[Command] = &[
     command(&["reverse-continue", "rc"], "[COUNT]", "walking", Offers::Nothing,
         |front, rest| walk::go(front, rest, Reverse, Walk::Continue),
         "back until something stops it"),
-    command(&["release"], "", "walking", Offers::Nothing, walk::release,
+    command(&["recover"], "", "walking", Offers::Nothing, errors::recover,
+        "on from an error that is due until the run is past it, or it is given up"),
+    command(&["release"], "", "walking", Offers::Nothing, errors::release,
         "let an arm move again that has stopped"),
     command(&["goto", "go"], "MOMENT|start|end|error|NAME", "jumping", Offers::Moments, walk::goto,
         "to a moment, the last error, a bookmark or a checkpoint of the program"),

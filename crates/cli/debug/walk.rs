@@ -1,6 +1,6 @@
 //! Walking and jumping, and what is said of where that led.
 
-use super::{Answer, Done, Front};
+use super::{Answer, Done, Front, errors};
 use crate::report;
 use obverse_bytecode::FunctionKind;
 use obverse_debugger::recording::Moment;
@@ -33,25 +33,39 @@ pub(super) fn go(front: &mut Front<'_>, rest: &str, direction: Direction, walk: 
             Direction::Reverse => front.session.go(direction, walk),
         };
         let goes_on = match walk {
-            Walk::Continue => matches!(halt, Halt::Hits(_)),
+            Walk::Continue => matches!(halt, Halt::Hits(_) | Halt::Stopped(Stop::Due { .. })),
             _ => halt == Halt::Done,
         };
         if !goes_on || made + 1 == count {
             break;
         }
     }
+    Ok(walked(front, &halt, direction, &names))
+}
+
+/// Where a walk has led, and why it ended.
+pub(super) fn walked(
+    front: &mut Front<'_>,
+    halt: &Halt,
+    direction: Direction,
+    names: &BTreeMap<u32, String>,
+) -> Answer {
     front.listed = None;
-    let mut lines = front.halt_words(&halt, direction, &names);
+    let mut lines = front.halt_words(halt, direction, names);
     lines.push(front.place_line());
-    let mut answer = Answer::lines(lines).with("halt", halt_code(&halt));
-    if let Halt::Hits(hits) = &halt {
+    let is_recovering = front.session.is_recovering();
+    let mut answer = Answer::lines(lines)
+        .with("halt", halt_code(halt))
+        .with("recovering", is_recovering)
+        .with("next", errors::intent(front, halt));
+    if let Halt::Hits(hits) = halt {
         let ids: Vec<u32> = hits.iter().map(|hit| hit.id).collect();
         answer = answer.with("breakpoints", ids);
     }
     if let Some(refusal) = halt.refusal() {
         answer = answer.with("stopped_at", report::place(front.module, Some(refusal.pc)));
     }
-    Ok(answer)
+    answer
 }
 
 /// Why a walk ended, for machines.
@@ -66,6 +80,8 @@ fn halt_code(halt: &Halt) -> &'static str {
         Halt::Stopped(Stop::Due { .. } | Stop::Raised { .. }) => "error",
         Halt::Stopped(Stop::AtStart | Stop::AtMark | Stop::OffMark) => "start",
         Halt::Stopped(Stop::Budget) | Halt::Limit => "limit",
+        Halt::Ended(ending) => ending.code(),
+        Halt::Held => "held",
         Halt::Changed => "changed",
         Halt::EndOfRecording => "end_of_recording",
         Halt::StartOfRecording => "start_of_recording",
@@ -77,7 +93,7 @@ fn halt_code(halt: &Halt) -> &'static str {
 impl Front<'_> {
     /// Why a walk ended, in words; none if it did what it was to do.
     fn halt_words(
-        &self,
+        &mut self,
         halt: &Halt,
         direction: Direction,
         names: &BTreeMap<u32, String>,
@@ -97,6 +113,7 @@ impl Front<'_> {
                 return hits.iter().map(words).collect();
             }
             Halt::Stopped(stop) => return self.stop_words(stop, direction),
+            Halt::Ended(_) | Halt::Held => return errors::halted(self, halt),
             Halt::Changed => "a variable was changed by hand here, and no record leads back over \
                               it; `leave` goes back to the run as it was"
                 .to_owned(),
@@ -115,30 +132,25 @@ impl Front<'_> {
         vec![line]
     }
 
-    fn stop_words(&self, stop: &Stop, direction: Direction) -> Vec<String> {
-        let module = self.module;
+    fn stop_words(&mut self, stop: &Stop, direction: Direction) -> Vec<String> {
         match stop {
-            Stop::Due { error, pc } | Stop::Raised { error, pc } => vec![
-                format!(
-                    "error {} is due at {}",
-                    module.errors[error.index()].name,
-                    report::line_of(module, *pc)
-                ),
-                "on: as the program says without going back; back: `reverse-next`, or `why`"
-                    .to_owned(),
-            ],
-            Stop::AtStart if direction == Direction::Forward => Vec::new(),
-            _ => {
-                let ending = ending(stop.clone(), self.session.machine());
-                let words = ending.map(|ending| report::ending_words(module, &ending));
-                let mut lines: Vec<String> = words.into_iter().collect();
-                if matches!(stop, Stop::Refused(_)) {
-                    let hint = "`goto` and `last` show what was before, and command nothing";
-                    lines.push(hint.to_owned());
-                }
-                lines
+            Stop::Due { error, pc } | Stop::Raised { error, pc } => {
+                return self.due_words(error.index(), *pc);
             }
+            Stop::AtStart if direction == Direction::Forward => return Vec::new(),
+            _ => {}
         }
+        let ending = ending(stop.clone(), self.session.machine());
+        let mut lines = ending.map(|ending| self.end_words(&ending)).unwrap_or_default();
+        match stop {
+            Stop::Fault { .. } => lines.extend(self.fault_words(direction)),
+            Stop::Refused(_) => {
+                let hint = "`goto` and `last` show what was before, and command nothing";
+                lines.push(hint.to_owned());
+            }
+            _ => {}
+        }
+        lines
     }
 
     /// On. What is before the first sequence is written nowhere: a walk does not end there, and
@@ -169,11 +181,6 @@ impl Front<'_> {
         lines.push(self.place_line());
         Answer::lines(lines)
     }
-}
-
-pub(super) fn release(front: &mut Front<'_>, _: &str) -> Done {
-    front.session.release().map_err(|why| why.to_string())?;
-    Ok(Answer::line("the arm may move again"))
 }
 
 pub(super) fn goto(front: &mut Front<'_>, rest: &str) -> Done {

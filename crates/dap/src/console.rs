@@ -2,12 +2,13 @@
 //!
 //! A text that is the name or the value of something is that; else it is a command.
 
-use crate::debuggee::{Debuggee, Next};
+use crate::debuggee::{Debuggee, Next, THREAD};
 use crate::message::{Evaluate, Request};
+use crate::motion::Going;
 use crate::{shown, words};
-use obverse_debugger::{Expression, Mode, Moment};
+use obverse_debugger::{Declined, Expression, Mode, Moment, Value as Known, Walk};
 use obverse_vm::Direction;
-use serde_json::{Value, json};
+use serde_json::json;
 
 /// How many actions of the history are shown unless another number is asked for.
 const SHOWN: usize = 20;
@@ -26,23 +27,35 @@ to NAME            to a bookmark
 what-if            go on otherwise from here, in a copy of the workcell
 set WHAT = VALUE   in a what-if, which begins here: give a variable or an input a value
 leave              out of the what-if, back to the run
+recover            at an error that is due: on until the run is past it, or it is given up
 release            give the command without which nothing moves after a stop
 Anything else is worked out: `x + 1`, `force > 5 N`, `output 3`, `held`, `time`, `steps`.";
 
 /// What a command comes to.
 enum Done {
+    /// A value.
+    Is(Known),
     Told(String),
     /// Another moment is shown.
     Moved(String),
+    /// The run goes on.
+    Goes(String),
 }
 
 impl Debuggee<'_, '_, '_> {
     pub(crate) fn evaluate(&mut self, request: &Request) -> Next {
         match request.given::<Evaluate>().and_then(|asked| self.evaluated(&asked)) {
-            Ok((body, has_moved)) => {
+            Ok(done) => {
+                let (text, kind) = match &done {
+                    Done::Is(value) => (&value.to_string(), shown::type_name(value)),
+                    Done::Told(text) | Done::Moved(text) | Done::Goes(text) => (text, ""),
+                };
+                let body = json!({ "result": text, "type": kind, "variablesReference": 0 });
                 self.server.out.answer(request, body);
-                if has_moved {
-                    self.jumped();
+                match done {
+                    Done::Moved(_) => self.jumped(),
+                    Done::Goes(_) => return self.goes_on(),
+                    Done::Is(_) | Done::Told(_) => {}
                 }
             }
             Err(why) => self.server.out.refuse(request, &why),
@@ -50,20 +63,22 @@ impl Debuggee<'_, '_, '_> {
         Next::Stay
     }
 
-    /// What is answered, and whether another moment is shown.
-    fn evaluated(&mut self, asked: &Evaluate) -> Result<(Value, bool), String> {
+    /// The run goes on, for what is due, and a client that has not asked for it is told.
+    fn goes_on(&mut self) -> Next {
+        let body = json!({ "threadId": THREAD, "allThreadsContinued": true });
+        self.server.out.event("continued", body);
+        Next::Go(Going::new(&self.session, Direction::Forward, Walk::Recover))
+    }
+
+    /// What it comes to.
+    fn evaluated(&mut self, asked: &Evaluate) -> Result<Done, String> {
         let module = self.session.module();
         let text = asked.expression.trim();
         let function = self.function_of(asked.frame_id);
-        let result = |text: &str, kind: &str| {
-            let mut result = json!({ "result": text, "variablesReference": 0 });
-            result["type"] = json!(kind);
-            result
-        };
         let error = match Expression::parse(module, function, text) {
             Ok(expression) => {
                 let value = self.session.look(|look| expression.value(look));
-                return Ok((result(&value.to_string(), shown::type_name(&value)), false));
+                return Ok(Done::Is(value));
             }
             Err(error) => error,
         };
@@ -71,12 +86,8 @@ impl Debuggee<'_, '_, '_> {
             return Err(error.to_string());
         }
         let (word, rest) = text.split_once(char::is_whitespace).unwrap_or((text, ""));
-        match self.command(word, rest.trim(), function) {
-            Some(Ok(Done::Told(text))) => Ok((result(&text, ""), false)),
-            Some(Ok(Done::Moved(text))) => Ok((result(&text, ""), true)),
-            Some(Err(why)) => Err(why),
-            None => Err(format!("{error}; `help` tells what can be typed")),
-        }
+        let done = self.command(word, rest.trim(), function);
+        done.unwrap_or_else(|| Err(format!("{error}; `help` tells what can be typed")))
     }
 
     /// What a command comes to; none if there is none of this name.
@@ -102,6 +113,8 @@ impl Debuggee<'_, '_, '_> {
             "what-if" => self.session.what_if().map_err(text).map(|()| self.here()),
             "set" => self.set_by_hand(rest, function),
             "leave" => self.session.leave_what_if().map_err(text).map(|()| self.here()),
+            "recover" => self.recovering(),
+            "release" if !self.session.is_held() => Err("no stop holds the arm".to_owned()),
             "release" => {
                 let released = self.session.release().map_err(text);
                 released.map(|()| Done::Told("released".to_owned()))
@@ -114,6 +127,16 @@ impl Debuggee<'_, '_, '_> {
         let pc = self.session.machine().state().pc();
         let line = words::line(self.session.module(), pc);
         Done::Moved(format!("{}: {line}", words::mode(&self.session)))
+    }
+
+    fn recovering(&self) -> Result<Done, String> {
+        self.refuse_moving()?;
+        match self.session.mode() {
+            Mode::Rewound => Err(Declined::NotLive.to_string()),
+            _ if self.session.is_held() => Err(words::HELD.to_owned()),
+            _ if self.session.is_recovering() => Ok(Done::Goes("recovering".to_owned())),
+            _ => Err(Declined::NothingDue.to_string()),
+        }
     }
 
     fn why(&self) -> String {
@@ -158,7 +181,8 @@ impl Debuggee<'_, '_, '_> {
         let expression = Expression::parse(self.session.module(), function, rest).map_err(text)?;
         let change = self.session.go_to_last_change(&expression).map_err(text)?;
         let here = match self.here() {
-            Done::Moved(here) | Done::Told(here) => here,
+            Done::Moved(here) | Done::Told(here) | Done::Goes(here) => here,
+            Done::Is(value) => value.to_string(),
         };
         let (before, after) = (change.before, change.after);
         Ok(Done::Moved(format!("{here}: `{rest}` is {before}, and becomes {after}")))

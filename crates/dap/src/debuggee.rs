@@ -6,24 +6,24 @@
 use crate::begin::{Stops, run};
 use crate::message::{
     DataInfo, Disassemble, FrameId, Goto, GotoTargets, Request, SetBreakpoints, SetExceptions,
-    SetPoints, SetVariable, SourceText, Step, Variables, Wanted,
+    SetPoints, SourceText, Step, Variables, Wanted,
 };
 use crate::motion::{Begun, Going, is_end};
+use crate::places;
 use crate::points::{Group, Points, data, filters};
 use crate::server::{Ended, Loaded, Server};
+use crate::story::{Story, Told};
 use crate::words::{self, Words};
-use crate::{places, shown};
 use obverse_bytecode::FunctionKind;
-use obverse_debugger::{
-    Declined, Expression, Grain, Halt, Mode, Moment, Session, Subject, Value as Known, Walk,
-};
+use obverse_debugger::{Grain, Halt, Mode, Moment, Policy, Session, Walk};
+use obverse_recovery::Memory;
 use obverse_sim::Sim;
 use obverse_vm::Direction;
 use serde_json::{Value, json};
 use std::sync::atomic::Ordering;
 
 /// A program is one thread to clients, also where it forks: its branches are one history.
-const THREAD: u64 = 1;
+pub(crate) const THREAD: u64 = 1;
 /// The most instructions between two looks at what log points have told.
 const SLICE: u64 = 1 << 16;
 /// The most moments that are offered of a line.
@@ -49,6 +49,8 @@ pub(crate) struct Debuggee<'a, 's, 'p> {
     pub(crate) loaded: &'p Loaded,
     launch: Stops,
     points: Points,
+    /// What is told of recoveries.
+    told: Told,
     /// What the last stop was about.
     stop: Words,
     /// The moments that were offered last.
@@ -64,7 +66,12 @@ impl<'a, 's, 'p> Debuggee<'a, 's, 'p> {
         loaded: &'p Loaded,
         wanted: &Wanted,
     ) -> Result<Self, String> {
-        let session = Session::over(run(loaded)?);
+        let mut session = Session::over(run(loaded)?);
+        let told = Told::default();
+        session.tell_to(Box::new(Story { module: session.module(), told: told.clone() }));
+        if let Wanted::Launch(launch) = wanted {
+            session.recover_by(Policy::declared(launch.seed), Memory::default());
+        }
         server.inbox.ring(session.interrupter());
         Ok(Self {
             server,
@@ -72,6 +79,7 @@ impl<'a, 's, 'p> Debuggee<'a, 's, 'p> {
             loaded,
             launch: Stops::of(wanted),
             points: Points::new(),
+            told,
             stop: Words::new("entry", "at the start"),
             targets: Vec::new(),
             is_started: false,
@@ -231,7 +239,7 @@ impl<'a, 's, 'p> Debuggee<'a, 's, 'p> {
     }
 
     /// Why the run cannot go anywhere, if it cannot.
-    fn refuse_moving(&self) -> Result<(), String> {
+    pub(crate) fn refuse_moving(&self) -> Result<(), String> {
         match (self.is_over, self.is_started) {
             (true, _) => Err("the session is over".to_owned()),
             (false, false) => Err("`configurationDone` comes first".to_owned()),
@@ -257,10 +265,14 @@ impl<'a, 's, 'p> Debuggee<'a, 's, 'p> {
             }
         };
         let position = self.session.position();
-        let is_at_end = position.mode == Mode::Rewound && position.moment == position.end;
-        if is_at_end {
+        let is_rewound = position.mode == Mode::Rewound;
+        if is_rewound && position.moment == position.end {
             let words = words::halt(&self.session, &Halt::EndOfRecording);
             self.server.out.refuse(request, &words.description);
+            return Next::Stay;
+        }
+        if !is_rewound && self.session.is_held() {
+            self.server.out.refuse(request, words::HELD);
             return Next::Stay;
         }
         self.server.out.answer(request, going_on(request));
@@ -337,7 +349,7 @@ impl<'a, 's, 'p> Debuggee<'a, 's, 'p> {
                     }
                     Err(ended) => break Some(ended),
                 },
-                halt if self.points.passes(self.session.module(), &halt) => {}
+                halt if self.passes(&halt) => {}
                 halt => {
                     self.halted(&halt);
                     break None;
@@ -346,6 +358,13 @@ impl<'a, 's, 'p> Debuggee<'a, 's, 'p> {
         };
         self.session.limit(u64::MAX);
         ended
+    }
+
+    /// Whether the run goes on from a halt, since nobody wants to hear of it.
+    fn passes(&self, halt: &Halt) -> bool {
+        let goes_on = !self.session.is_over() && !self.session.is_held();
+        let is_nothing = self.launch.no_debug && matches!(halt, Halt::Stopped(_)) && goes_on;
+        is_nothing || self.points.passes(self.session.module(), halt)
     }
 
     /// The message that a run was halted for. Whether the run goes on.
@@ -381,8 +400,11 @@ impl<'a, 's, 'p> Debuggee<'a, 's, 'p> {
         Ok(true)
     }
 
-    /// What log points have told.
+    /// What log points have told, and what was done about errors.
     fn tell(&mut self) {
+        for text in self.told.take() {
+            self.server.out.tell("console", &text);
+        }
         for (_, text) in self.session.take_told() {
             self.server.out.tell("console", &text);
         }
@@ -394,6 +416,7 @@ impl<'a, 's, 'p> Debuggee<'a, 's, 'p> {
             return;
         }
         let mut words = words::halt(&self.session, halt);
+        words.add_intent(&mut self.session, halt);
         let mut ids = Vec::new();
         if let Halt::Hits(hits) = halt {
             ids = hits.iter().map(|hit| hit.id).collect();
@@ -526,58 +549,6 @@ impl<'a, 's, 'p> Debuggee<'a, 's, 'p> {
         let moment = moment.ok_or("ask for `gotoTargets` first: there is no such target")?;
         self.session.go_to(moment).map_err(|why| why.to_string())?;
         Ok(Value::Null)
-    }
-
-    fn set_variable(&mut self, request: &Request) -> Answer {
-        let asked: SetVariable = request.given()?;
-        let subject = self.named(asked.variables_reference, &asked.name)?;
-        let function = self.function_of_variables(asked.variables_reference);
-        let value = self.assign(&subject, function, &asked.value)?;
-        if self.server.client.supports_invalidated_event {
-            self.server.out.event("invalidated", json!({ "areas": ["all"] }));
-        }
-        let kind = shown::type_name(&value);
-        Ok(json!({ "value": value.to_string(), "type": kind, "variablesReference": 0 }))
-    }
-
-    /// Give something a value: in a what-if, which begins here if none has.
-    pub(crate) fn assign(
-        &mut self,
-        subject: &Subject,
-        function: usize,
-        text: &str,
-    ) -> Result<Known, String> {
-        self.refuse_moving()?;
-        let module = self.session.module();
-        let expression =
-            Expression::parse(module, function, text).map_err(|error| error.to_string())?;
-        let value = self.session.look(|look| expression.value(look));
-        let is_new = self.session.mode() != Mode::WhatIf;
-        if is_new {
-            self.session.what_if().map_err(|why| why.to_string())?;
-        }
-        let done = match (subject, &value) {
-            (Subject::Input(bit), Known::Bool(level)) => {
-                self.session.force_input(*bit, Some(*level))
-            }
-            (Subject::Global(_) | Subject::Local(..), _) => self.session.assign(subject, &value),
-            _ => Err(Declined::NotAssignable),
-        };
-        if let Err(why) = done {
-            if is_new {
-                self.session.leave_what_if().map_err(|why| why.to_string())?;
-            }
-            return Err(format!("`{}`: {why}", subject.name(module)));
-        }
-        if is_new {
-            let text = "what follows is a what-if, in a copy of the workcell; `leave` goes back to \
-                        the run, which stays as it was";
-            self.server.out.tell("console", text);
-        }
-        match subject {
-            Subject::Input(_) => Ok(value),
-            _ => Ok(self.session.look(|look| subject.read(look))),
-        }
     }
 }
 

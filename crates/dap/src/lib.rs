@@ -9,7 +9,8 @@
 //! `outbox`, how messages come and go while a run is under way; [`server`], a connection up to
 //! where a program is loaded; `begin`, how a session begins; `debuggee`, the session, with
 //! `motion`, how it is driven, `points`, its breakpoints, `places`, source files and instructions,
-//! `shown`, what is looked at, `console`, what can be typed, and `words`, what stops are called.
+//! `shown`, what is looked at, `change`, what is given another value, `console`, what can be typed,
+//! `words`, what stops are called, and `story`, what is told of recoveries.
 //! It knows no files, and no source language.
 
 pub mod frame;
@@ -17,6 +18,7 @@ pub mod message;
 pub mod server;
 
 mod begin;
+mod change;
 mod console;
 mod debuggee;
 mod inbox;
@@ -25,6 +27,7 @@ mod outbox;
 mod places;
 mod points;
 mod shown;
+mod story;
 mod words;
 
 pub use message::{Attach, Launch, Wanted};

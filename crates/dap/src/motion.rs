@@ -58,7 +58,7 @@ impl Going {
                 let is_begin = || is_begin(session.module(), session.machine().state());
                 depth(session) <= self.depth && (grain == Grain::Instruction || is_begin())
             }
-            Walk::Step(_) | Walk::Continue => true,
+            Walk::Step(_) | Walk::Continue | Walk::Recover => true,
         }
     }
 

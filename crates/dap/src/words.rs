@@ -1,7 +1,9 @@
 //! What stops are called, to clients and to people.
 
 use obverse_bytecode::Module;
+pub(crate) use obverse_bytecode::text::line_of as line;
 use obverse_debugger::{Halt, Mode, Session};
+use obverse_recovery::Ending;
 use obverse_sim::Sim;
 use obverse_vm::{Direction, Refusal, Stop, Trap, TrapKind};
 
@@ -27,6 +29,17 @@ impl Words {
         let (description, exception) = (description.to_owned(), Some(id.to_owned()));
         Self { reason: "exception", description, text: Some(text), exception }
     }
+
+    /// With what will be done about the error, if that is what it stopped for.
+    pub(crate) fn add_intent(&mut self, session: &mut Session<'_, Sim>, halt: &Halt) {
+        if !matches!(halt, Halt::Stopped(Stop::Due { .. })) {
+            return;
+        }
+        if let (Some(intent), Some(text)) = (session.intent(), &mut self.text) {
+            text.push_str("; next: ");
+            text.push_str(&intent.words(session.module()));
+        }
+    }
 }
 
 /// Of a halt.
@@ -36,6 +49,8 @@ pub(crate) fn halt(session: &Session<'_, Sim>, halt: &Halt) -> Words {
         Halt::Hits(_) => Words::new("breakpoint", "at a breakpoint"),
         Halt::Stopped(Stop::Refused(refusal)) => refused(session, refusal),
         Halt::Stopped(stop) => stopped(session.module(), stop),
+        Halt::Ended(ending) => ended(session.module(), ending),
+        Halt::Held => Words::wrong("fault", "the arm is held", HELD.to_owned()),
         Halt::Changed => Words::new("step", CHANGED),
         Halt::EndOfRecording if session.run().cell().is_none() => {
             Words::new("step", "at the end of the recording")
@@ -50,6 +65,8 @@ pub(crate) fn halt(session: &Session<'_, Sim>, halt: &Halt) -> Words {
     }
 }
 
+pub(crate) const HELD: &str =
+    "nothing moves before a person's command: `release` in the debug console gives it";
 const CHANGED: &str =
     "a variable was changed by hand here, and nothing recorded what was before: going back ends";
 const END_OF_RECORDING: &str = "at the end of what is recorded: `live` in the debug console goes \
@@ -67,11 +84,7 @@ fn stopped(module: &Module, stop: &Stop) -> Words {
         }
         Stop::Due { error: due, pc } => {
             let name = error(due.index());
-            let text = format!(
-                "error {name} is due at {}: go back as far as may help, and forward again; or go \
-                 on, and what the program does otherwise follows",
-                line(module, *pc)
-            );
+            let text = format!("error {name} is due at {}", line(module, *pc));
             Words::wrong(name, "error due", text)
         }
         Stop::Fault { fault, pc, direction } => {
@@ -80,6 +93,18 @@ fn stopped(module: &Module, stop: &Stop) -> Words {
         }
         Stop::Refused(refusal) => Words::new("never", why_not(module, refusal)),
         Stop::Trap(trap) => Words::wrong("trap", "trap", trapped(module, trap)),
+    }
+}
+
+/// Of a run that has ended in an error that was given up.
+fn ended(module: &Module, ending: &Ending) -> Words {
+    match ending {
+        Ending::GivenUp { error, pc, why } => {
+            let name = module.errors.get(error.index()).map_or("", |error| error.name.as_str());
+            let text = format!("error {name}, due at {}: {why}", line(module, *pc));
+            Words::wrong(name, "error given up", text)
+        }
+        _ => Words::new("end", "the program has ended"),
     }
 }
 
@@ -104,12 +129,6 @@ fn trapped(module: &Module, trap: &Trap) -> String {
         _ => None,
     };
     format!("{}: {}", line(module, trap.pc), own.unwrap_or_else(|| trap.kind.to_string()))
-}
-
-/// Where an instruction was written: `peg_in_hole.obv:42`.
-pub(crate) fn line(module: &Module, pc: u32) -> String {
-    let place = module.place_of(pc);
-    place.map_or_else(|| format!("instruction {pc}"), |(file, line, _)| format!("{file}:{line}"))
 }
 
 /// What is shown, in a few words.

@@ -31,6 +31,9 @@ pub(crate) fn retraced<'p, C: Workcell>(run: &Run<'p, C>, at: &Rewound<'p>) -> R
             _ => {}
         }
     }
+    let taken = at.cursor().frame().checked_sub(1);
+    let last = taken.and_then(|newest| recording.log.frames.get(newest));
+    recovering.stand_as(at.machine(), last.and_then(|frame| recording.log.fault(frame)));
     recovering
 }
 

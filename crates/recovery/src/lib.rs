@@ -12,7 +12,7 @@
 //! next; [`memory`], what was learned of that, with the codes of
 //! what is wrong with its text ([`mod@code`]), and `belief`, what follows; [`foresight`], who would
 //! know better; [`change`], what is done otherwise on the way forward again; [`tell`], what a
-//! person is told, and the tape (`noted`); [`recovering`], where a run stands between two looks at
+//! person is told, in which [`words`](mod@words), and the tape (`noted`); [`recovering`], where a run stands between two looks at
 //! it; [`mod@recover`], the loop, `plan`, what is decided in it, and `attempt`, one way back and
 //! forward again.
 
@@ -38,6 +38,7 @@ pub mod recovering;
 pub mod strategy;
 pub mod tell;
 pub mod trail;
+pub mod words;
 
 pub use asked::sequence;
 pub use code::MemoryCode;
@@ -52,3 +53,4 @@ pub use recovering::{Advance, Intended, Intent, Recovering};
 pub use strategy::{Bounds, PERSON_S, Strategy};
 pub use tell::{Operator, Step, Teller, Unattended, Why};
 pub use trail::{Action, Trail};
+pub use words::{changed, name, words};

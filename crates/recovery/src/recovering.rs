@@ -204,6 +204,12 @@ impl<'p> Recovering<'p> {
         matches!(self.phase, Phase::Due { .. })
     }
 
+    /// Whether the run is over; who goes on all the same does so by hand.
+    #[must_use]
+    pub fn is_over(&self) -> bool {
+        matches!(self.phase, Phase::Ended)
+    }
+
     /// Whether an error is due, or a fault is to be one, or the run is not past one yet.
     #[must_use]
     pub fn is_under_way(&self) -> bool {
@@ -281,6 +287,25 @@ impl<'p> Recovering<'p> {
             steps = steps.saturating_sub(1 + u64::from(instr.map_or(0, Instr::prefix)));
         }
         self.trail.cut_into(steps, pc);
+    }
+
+    /// Stand as a machine does of which only its state is known, and the fault of its last act: at
+    /// an error that is due, at a fault that becomes one, or on its way.
+    pub fn stand_as(&mut self, machine: &Machine<'_>, fault: Option<&Fault>) {
+        let (state, module) = (machine.state(), self.trail.module());
+        let pc = state.pc();
+        let is_stopped =
+            state.pending().is_some_and(|pending| pending.direction == Direction::Forward);
+        let before = pc.checked_sub(1).and_then(|pc| module.code.get(pc as usize));
+        self.phase = match (fault.filter(|_| is_stopped), before) {
+            (Some(fault), _) if error_of(module, fault).is_some() => {
+                Phase::Faulted { fault: fault.clone(), pc }
+            }
+            (None, Some(Instr::ErrorDue { error })) if state.raised().contains(error) => {
+                Phase::Due { error: *error, pc: pc - 1 }
+            }
+            _ => Phase::Forward,
+        };
     }
 
     /// Nothing leads back from here: what was before is not to be gone back to.

@@ -14,6 +14,7 @@ use obverse_debugger::{
     Breakpoint, Expression, Grain, Places, Run, Session, Subject, Value, Walk, What,
 };
 use obverse_isa::{ErrorId, GlobalId, LocalId};
+use obverse_recovery::{Step, Teller};
 use obverse_vm::{Alteration, Direction, Event, Observer, Stop};
 use obverse_workcell::Workcell;
 use std::collections::BTreeMap;
@@ -281,6 +282,12 @@ struct Told(Arc<AtomicU64>);
 
 impl Observer for Told {
     fn on_event(&mut self, _: &Event, _: &dyn Workcell) {
+        self.0.fetch_add(1, Ordering::Relaxed);
+    }
+}
+
+impl Teller for Told {
+    fn on_step(&mut self, _: &Step<'_>, _: &dyn Workcell) {
         self.0.fetch_add(1, Ordering::Relaxed);
     }
 }

@@ -26,6 +26,7 @@ pub mod reach_laws;
 pub mod reach_programs;
 pub mod recovery_laws;
 pub mod reference;
+pub mod session_laws;
 pub mod symbol_laws;
 pub mod tape_laws;
 pub mod wait_laws;

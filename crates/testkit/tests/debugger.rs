@@ -106,15 +106,25 @@ fn an_act_that_was_cut_by_what_is_watched_is_shown_so_and_can_be_gone_on_from() 
         "{halt:?}"
     );
     let cut = (session.digest(), session.recording().end);
-    // Gone forward from there, the act is done to its end.
+    // What was noticed is the program's error, at which it stops.
+    let due = session.go(Forward, Walk::Continue);
+    assert!(matches!(due, Halt::Stopped(Stop::Due { .. })), "{due:?}");
     assert_eq!(session.go(Forward, Walk::Continue), Halt::Stopped(Stop::Finished));
+    assert_eq!(session.machine().state().raised().len(), 1);
     let end = session.digest();
     session.go_to(cut.1).expect("a moment");
     assert_eq!(session.digest(), cut.0);
     session.what_if().expect("the workcell does again what it did");
     assert_eq!(session.digest(), cut.0);
+    assert_eq!(session.go(Forward, Walk::Continue), due);
     assert_eq!(session.go(Forward, Walk::Continue), Halt::Stopped(Stop::Finished));
     assert_eq!(session.digest(), end);
+    session.leave_what_if().expect("something is tried");
+    // Taken back by hand and gone forward again, nothing comes any more.
+    session.go_to_end();
+    assert_eq!(session.go(Reverse, Walk::Continue), Halt::Stopped(Stop::AtStart));
+    assert_eq!(session.go(Forward, Walk::Continue), Halt::Stopped(Stop::Finished));
+    assert!(session.machine().state().raised().is_empty());
 }
 
 #[test]

@@ -67,6 +67,7 @@ mod names;
 mod nearest;
 mod quote;
 mod resolve;
+mod said;
 mod scan;
 mod words;
 
@@ -75,3 +76,4 @@ pub use declare::DIRECTIVES;
 pub use disassemble::{disassemble, disassemble_function, instruction};
 pub use error::{AsmError, MAX_ERRORS};
 pub use nearest::nearest;
+pub use said::{SAID_COLUMNS, line_of, said};

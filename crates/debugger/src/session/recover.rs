@@ -95,6 +95,12 @@ impl<'p, C: Workcell> Session<'p, C> {
         !self.standing.is_taken_back && self.standing.at.is_under_way()
     }
 
+    /// Whether the live run is over; who goes on all the same does so by hand.
+    #[must_use]
+    pub fn is_over(&self) -> bool {
+        !self.standing.is_taken_back && self.standing.at.is_over()
+    }
+
     /// What will be done about the error that is due, if one is in the live run that is shown.
     pub fn intent(&mut self) -> Option<Intent> {
         if self.view.is_some() || !self.is_recovering() {
@@ -158,7 +164,8 @@ impl<'p, C: Workcell> Session<'p, C> {
     }
 
     /// Whether nothing may move before a person's command.
-    pub(super) fn is_held(&self) -> bool {
+    #[must_use]
+    pub fn is_held(&self) -> bool {
         self.run.cell().is_some_and(Safety::is_stopped)
     }
 

@@ -208,7 +208,8 @@ impl<'p, C: Workcell> Session<'p, C> {
             if !hits.is_empty() {
                 return Some(Halt::Hits(hits));
             }
-            if has_moved {
+            let is_past = walk == Walk::Recover && !self.is_recovering();
+            if has_moved || is_past {
                 return None;
             }
         }

@@ -1,0 +1,153 @@
+//! The law of a live session over generated programs with faults, errors and what is watched: it is
+//! a run, however it is walked through.
+
+use crate::logged::Logged;
+use crate::programs::{self, Options};
+use crate::recovery_laws::{self, Releases, STRATEGIES, all_reversing};
+use arbitrary::{Result, Unstructured};
+use obverse_bytecode::{FaultName, Respond, Watched};
+use obverse_debugger::{Breakpoint, Grain, Halt, Moment, Places, Policy, Run, Session, Walk};
+use obverse_recovery::{
+    Bounds, Ending, Memory, Recovery, Step, Strategy, Subject, Teller, recover,
+};
+use obverse_vm::{Direction, Event, Limits, Machine, Observer};
+use obverse_workcell::Workcell;
+use std::sync::{Arc, Mutex};
+
+/// Tells what happens in words, into a list that others hold too.
+#[derive(Clone, Default)]
+struct Story(Arc<Mutex<Vec<String>>>);
+
+impl Story {
+    fn tell(&self, words: String) {
+        if let Ok(mut told) = self.0.lock() {
+            told.push(words);
+        }
+    }
+
+    fn told(&self) -> Vec<String> {
+        self.0.lock().map(|told| told.clone()).unwrap_or_default()
+    }
+}
+
+impl Observer for Story {
+    fn on_event(&mut self, event: &Event, cell: &dyn Workcell) {
+        // How often a statement was begun that traps is told of no step.
+        let event = Event { executed: 0, ..event.clone() };
+        self.tell(format!("{:?} {event:?}", cell.now_s().to_bits()));
+    }
+}
+
+impl Teller for Story {
+    fn on_step(&mut self, step: &Step<'_>, cell: &dyn Workcell) {
+        self.tell(format!("{:?} {step:?}", cell.now_s().to_bits()));
+    }
+}
+
+/// Whoever walks forward through a run in a session, by whatever steps, over whatever breakpoints
+/// and looks at what was, comes to the end that the run comes to by itself, recoveries included:
+/// the same state and tape, the same story, the same learned.
+///
+/// # Errors
+/// Those of the randomness.
+///
+/// # Panics
+/// If it is not so.
+pub fn is_a_run(u: &mut Unstructured<'_>) -> Result<bool> {
+    // Those that command beside the program ask for a person at once.
+    let strategies = STRATEGIES.map(|it| match it {
+        Strategy::BackUp { .. } => Strategy::Declared,
+        other => other,
+    });
+    let strategy = *u.choose(&strategies)?;
+    let fraction = f64::from(u.int_in_range(0_u8..=10)?) / 10.0;
+    let mut cell = Logged::new(u.arbitrary()?);
+    cell.ledger.stop_at = Some((u.int_in_range(0..=40)?, fraction));
+    cell.ledger.comes_at = Some((u.int_in_range(0..=40)?, fraction));
+    let walks: [u8; 16] = u.arbitrary()?;
+    let breaks: [u8; 2] = u.arbitrary()?;
+    let (names_faults, is_at_once): (bool, bool) = (u.arbitrary()?, u.arbitrary()?);
+    let options = Options { allow_overrides: u.arbitrary()?, ..Options::default() };
+    let source = all_reversing(&programs::generate(u, options)?);
+    let program = recovery_laws::program(&source, |module| {
+        if let (true, Some(error)) = (names_faults, module.errors.first_mut()) {
+            error.faults = vec![FaultName::ProtectiveStop];
+            error.watches = vec![Watched::Force { above_n: 50.0 }];
+            error.respond = [Respond::AtOnce, Respond::AfterAction][usize::from(!is_at_once)];
+        }
+    });
+    let (mut alone, mut memory, mut story) = (cell.clone(), Memory::default(), Story::default());
+    let Ok(mut machine) = Machine::new(&program, &alone) else { return Ok(false) };
+    let policy = Policy { strategy, bounds: Bounds::default(), person_s: 300.0, seed: 7 };
+    let mut recovery = Recovery {
+        strategy,
+        bounds: policy.bounds,
+        memory: &mut memory,
+        remembers: true,
+        person_s: policy.person_s,
+        seed: policy.seed,
+        operator: &mut Releases(u32::MAX),
+        foresight: None,
+        incidents: Vec::new(),
+    };
+    let limits = Limits::instructions(20_000);
+    let ending = recover(&mut machine, limits, &mut alone, &mut recovery, &mut story);
+    let incidents = recovery.incidents;
+    if ending == Ending::Budget {
+        return Ok(false);
+    }
+    let Ok(run) = Run::new(&program, cell) else { return Ok(false) };
+    let mut session = Session::over(run);
+    let told = Story::default();
+    session.tell_to(Box::new(told.clone()));
+    session.recover_by(policy, Memory::default());
+    for at in breaks {
+        let pc = u32::from(at) % program.module().code.len().max(1) as u32;
+        if let Ok(places) = Places::of_instruction(program.module(), pc) {
+            session.add_breakpoint(Breakpoint::at(places));
+        }
+    }
+    let halts = walk_to_end(&mut session, &walks);
+    let what = || format!("{policy:?}, {ending:?}, {halts:?}\n{source}");
+    assert_eq!(told.told(), story.told(), "{}", what());
+    assert_eq!(session.incidents(), incidents, "{}", what());
+    let subject = Subject { program: String::new(), cell: String::new() };
+    let (learned, here) = (memory.to_text(&subject), session.memory().to_text(&subject));
+    assert_eq!(here, learned, "{}", what());
+    assert_eq!(session.digest(), machine.digest(&alone), "{}", what());
+    assert_eq!(session.machine().streams(), machine.streams(), "{}", what());
+    // What was recorded shows it again.
+    session.go_to(session.recording().end).map_err(|_| arbitrary::Error::IncorrectFormat)?;
+    assert_eq!(session.digest(), machine.digest(&alone), "shown again: {}", what());
+    Ok(!incidents.is_empty())
+}
+
+/// Walk by these ways, as often as it takes, until the run is over.
+fn walk_to_end(session: &mut Session<'_, Logged>, walks: &[u8]) -> Vec<String> {
+    use Direction::Forward;
+    let mut halts = Vec::new();
+    for walk in walks.iter().cycle().take(30_000) {
+        let halt = match walk % 8 {
+            0 => session.go(Forward, Walk::Step(Grain::Instruction)),
+            1 => session.go(Forward, Walk::Step(Grain::Statement)),
+            2 => session.go(Forward, Walk::Next(Grain::Statement)),
+            3 => session.go(Forward, Walk::Finish),
+            4 => session.recover().unwrap_or(Halt::Done),
+            5 => {
+                let _looked = session.go_to(Moment(session.recording().end.0 / 2));
+                session.go(Forward, Walk::Step(Grain::Instruction));
+                session.go_to_end();
+                Halt::Done
+            }
+            _ => session.go(Forward, Walk::Continue),
+        };
+        if halt == Halt::Held {
+            let _ = session.release();
+        }
+        halts.push(format!("{halt:?}"));
+        if session.is_over() {
+            break;
+        }
+    }
+    halts
+}
