@@ -3,9 +3,11 @@
 //! The other program runs in the same workcell first, untold and without a tape. Knows nothing of
 //! what begins then.
 
-use crate::load::{self, Workcell};
-use crate::problem::Problem;
+use crate::load::{self, Program, Workcell};
+use crate::problem::{Message, Problem};
 use crate::report;
+use obverse_bytecode::{encode, fingerprint};
+use obverse_debugger::Before;
 use obverse_recovery::{Ending, drive};
 use obverse_sim::Sim;
 use obverse_vm::{Direction, Limits};
@@ -23,18 +25,72 @@ pub(crate) struct AfterArguments {
 }
 
 impl AfterArguments {
-    /// Run what goes before, if anything does.
+    /// Run what goes before, if anything does. What that was.
     ///
     /// # Errors
     /// It does not fit into the workcell, or does not come to its end there.
-    pub(crate) fn lead(&self, cell: &mut Sim, file: &Workcell) -> Result<(), Problem> {
-        self.after.as_deref().map_or(Ok(()), |first| lead(first, cell, file))
+    pub(crate) fn lead(&self, cell: &mut Sim, file: &Workcell) -> Result<Option<Before>, Problem> {
+        lead(self.after.as_deref(), cell, file)
     }
 }
 
-fn lead(first: &Path, cell: &mut Sim, file: &Workcell) -> Result<(), Problem> {
+/// `, after first.obv`, behind what says where a program runs.
+pub(crate) fn words(first: Option<&Path>) -> String {
+    first.map(|first| format!(", after {}", first.display())).unwrap_or_default()
+}
+
+/// Run a program that goes before, if there is one. What that was.
+///
+/// # Errors
+/// It does not fit into the workcell, or does not come to its end there.
+pub(crate) fn lead(
+    first: Option<&Path>,
+    cell: &mut Sim,
+    file: &Workcell,
+) -> Result<Option<Before>, Problem> {
+    let Some(first) = first else { return Ok(None) };
     let program = load::quietly(first)?;
-    let mut machine = load::machine(&program, cell, file)?.without_tape();
+    run_through(&program, cell, file)?;
+    Ok(Some(before(&program)?))
+}
+
+/// Run again what a recorded run began after, now found under this name.
+///
+/// # Errors
+/// The same, and if it is not the program that it was.
+pub(crate) fn lead_again(
+    recorded: &Before,
+    first: &Path,
+    cell: &mut Sim,
+    file: &Workcell,
+) -> Result<(), Problem> {
+    let program = load::quietly(first).map_err(|mut problem| {
+        let hint = || Message::new("the run began after it; `--after PROGRAM` says where it is");
+        let hinted = problem.messages.into_iter().map(|message| message.with(Some(hint())));
+        problem.messages = hinted.collect();
+        problem
+    })?;
+    let found = before(&program)?.fingerprint;
+    if found != recorded.fingerprint {
+        let (name, was) = (&recorded.program, recorded.fingerprint);
+        let why = format!(
+            "the run began after {name} as it was then ({was:016x}), and this is {found:016x}; \
+             `--after PROGRAM` names it where it is as it was, or record the run again"
+        );
+        return Err(Problem::of_file(first, why));
+    }
+    run_through(&program, cell, file)
+}
+
+fn before(program: &Program) -> Result<Before, Problem> {
+    let module = encode(program.verified.module());
+    let module = module.map_err(|error| Problem::of_file(&program.path, error))?;
+    let name = program.path.display().to_string();
+    Ok(Before { program: name, fingerprint: fingerprint(&module) })
+}
+
+fn run_through(program: &Program, cell: &mut Sim, file: &Workcell) -> Result<(), Problem> {
+    let mut machine = load::machine(program, cell, file)?.without_tape();
     let limits = Limits::instructions(INSTRUCTIONS_MAX);
     let ending = drive(&mut machine, Direction::Forward, limits, cell, &mut ());
     if ending == Ending::Finished {
@@ -42,7 +98,7 @@ fn lead(first: &Path, cell: &mut Sim, file: &Workcell) -> Result<(), Problem> {
     }
     let words = report::ending_words(program.verified.module(), &ending);
     Err(Problem::of_file(
-        first,
+        &program.path,
         format!("nothing can begin after it, since it does not end: {words}"),
     ))
 }

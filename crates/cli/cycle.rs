@@ -79,11 +79,12 @@ pub(crate) struct Cycle<'m> {
 const MAX_READINGS: usize = 1_000;
 
 impl<'m> Cycle<'m> {
-    pub(crate) fn new(module: &'m Module) -> Self {
+    /// Of a run that begins when the workcell's clock shows so many seconds.
+    pub(crate) fn new(module: &'m Module, begin_s: f64) -> Self {
         Self {
             module,
             calls: Vec::new(),
-            last_s: 0.0,
+            last_s: begin_s,
             sequences: BTreeMap::new(),
             actions: BTreeMap::new(),
             readings: BTreeMap::new(),

@@ -1,11 +1,13 @@
 //! Runs that are recorded to a tape file, and tape files as they are opened again.
 
+use crate::after;
 use crate::commands::run::Arguments;
 use crate::files;
 use crate::load::{self, Program};
 use crate::problem::{Message, Problem, plain};
+use crate::show;
 use obverse_bytecode::{SourceFile, encode, fingerprint, verify};
-use obverse_debugger::{Run, TapeFile, Taped, Writer, taped};
+use obverse_debugger::{Before, Run, TapeFile, Taped, Writer, taped};
 use obverse_recovery::{Direct, Driven};
 use obverse_sim::Sim;
 use obverse_vm::Machine;
@@ -28,12 +30,14 @@ pub(crate) enum Rig<'r, 'p> {
 }
 
 impl<'r, 'p> Rig<'r, 'p> {
-    /// Of a run that is about to begin, recorded to a file if there is one.
+    /// Of a run that is about to begin, recorded to a file if there is one, with what was run in
+    /// the workcell before.
     pub(crate) fn of(
         arguments: &'r Arguments,
         program: &Program,
         (machine, cell): (&'r mut Machine<'p>, &'r mut Sim),
         file: Option<&'r mut File>,
+        before: Option<Before>,
     ) -> Result<Self, Problem> {
         let (Some(path), Some(file)) = (&arguments.tape, file) else {
             return Ok(Self::Plain(Direct { machine, cell }));
@@ -41,8 +45,9 @@ impl<'r, 'p> Rig<'r, 'p> {
         let cell_path = load::workcell_path(program, arguments.cell.as_deref());
         let name = |path: &Path| path.display().to_string();
         let names = (name(&program.path), cell_path.as_deref().map(name));
-        let head = taped::head(program.verified.module(), cell, names, arguments.seed)
+        let mut head = taped::head(program.verified.module(), cell, names, arguments.seed)
             .map_err(|error| Problem::of_file(path, error))?;
+        head.after = before;
         let taped = Taped::new(machine, cell, Writer::begin(file, head));
         Ok(Self::Taped(Box::new(taped), path))
     }
@@ -61,6 +66,22 @@ impl<'r, 'p> Rig<'r, 'p> {
         taped.end(ending).map_err(|error| {
             Problem::of_file(path, format!("cannot be written: {}", plain(&error)))
         })
+    }
+}
+
+/// Where what a run began in is to be had, if elsewhere than the tape says.
+#[derive(Clone, Copy)]
+pub(crate) struct Named<'n> {
+    /// The workcell file.
+    pub(crate) cell: Option<&'n Path>,
+    /// The program that was run in it before.
+    pub(crate) after: Option<&'n Path>,
+}
+
+impl Named<'_> {
+    /// Whether anything is named.
+    pub(crate) fn is_any(self) -> bool {
+        self.cell.is_some() || self.after.is_some()
     }
 }
 
@@ -137,7 +158,9 @@ impl Opened {
     pub(crate) fn title(&self) -> String {
         let head = &self.file.head;
         let (tape, program, cell) = (self.path.display(), &head.program, self.cell());
-        format!("{tape}: a run of {program} in {cell}, seed {}", head.seed)
+        let after = head.after.as_ref().map(|before| Path::new(&before.program));
+        let after = after::words(after);
+        format!("{tape}: a run of {program} in {cell}, seed {}{after}", head.seed)
     }
 
     fn cell(&self) -> &str {
@@ -146,8 +169,10 @@ impl Opened {
 
     /// Why nothing can be tried otherwise, if nothing can.
     pub(crate) fn lacks(&self, problem: Option<&Problem>) -> Option<String> {
-        let why = problem?.messages.first().map_or("", |message| &message.text);
-        Some(format!("nothing can be tried otherwise: {}: {why}", self.cell()))
+        let Problem { messages, source } = problem?;
+        let of_source = source.iter().flat_map(show::diagnostic_lines);
+        let why = messages.iter().map(ToString::to_string).chain(of_source).next();
+        Some(format!("nothing can be tried otherwise: {}", why.unwrap_or_default()))
     }
 
     /// How the run ended, in words.
@@ -163,11 +188,28 @@ impl Opened {
         }
     }
 
-    /// The workcell that the run began in, if it is still to be had.
-    pub(crate) fn start(&self, named: Option<&Path>) -> Result<Sim, Problem> {
-        let recorded = self.file.head.cell.as_ref().map(PathBuf::from);
-        let path = named.map(Path::to_owned).or(recorded);
-        let (cell, _) = load::cell(&self.program, path.as_deref())?;
-        Ok(Sim::new(&cell, self.file.head.seed))
+    /// The workcell that the run began in, if it is still to be had. Another file of it may be
+    /// named, and of the program that was run in it before.
+    ///
+    /// # Errors
+    /// If it cannot be had, or nothing was run in it before and yet such a program is named.
+    pub(crate) fn start(&self, named: Named<'_>) -> Result<Sim, Problem> {
+        let head = &self.file.head;
+        let path = named.cell.or(head.cell.as_deref().map(Path::new));
+        let (cell, file) = load::cell(&self.program, path)?;
+        let mut cell = Sim::new(&cell, head.seed);
+        match (&head.after, named.after) {
+            (None, None) => {}
+            (None, Some(first)) => {
+                let first = first.display();
+                let why = format!("its run began after nothing else; leave `--after {first}` out");
+                return Err(Problem::of_file(&self.path, why));
+            }
+            (Some(before), first) => {
+                let first = first.unwrap_or(Path::new(&before.program));
+                after::lead_again(before, first, &mut cell, &file)?;
+            }
+        }
+        Ok(cell)
     }
 }

@@ -177,10 +177,26 @@ fn what_there_is_can_be_looked_at() {
     assert_eq!(all[6]["history"][0]["text"], "set 2 high");
     assert_eq!(all[7]["tape"]["bits"], 1);
     let listed = all[8]["text"].as_array().expect("lines");
-    assert!(listed.iter().any(|line| line == ">   6  ⇄   count += 1"), "{listed:?}");
+    assert!(listed.iter().any(|line| line == ">   6 │⇄   count += 1"), "{listed:?}");
     for answer in &all {
         assert!(answer["text"].is_array(), "{answer}");
     }
+}
+
+/// A bracket is along lines that can go back equally far: it ends where something stops that.
+#[test]
+fn a_listing_shows_by_brackets_how_far_back_lines_go() {
+    let bench = bench("brackets");
+    let listed = piped(&bench, &[], &["list 16"]).stdout;
+    let lines = listed.lines().skip(3);
+    let margins: Vec<String> = lines.map(|line| line.chars().skip(6).take(2).collect()).collect();
+    assert_eq!(margins, ["╭←", "│⇄", "╰✗", "╶←", "  ", "╭←", "│←", "╰⇄", "  "], "{listed}");
+    // Instructions have them where there is no source.
+    let assembly = bench.ends(0, &["dis", "p.obv"]).stdout;
+    let bare: Vec<&str> = assembly.lines().filter(|it| !it.trim().starts_with('@')).collect();
+    bench.write("bare.obvasm", bare.join("\n"));
+    let listed = piped_to(&bench, &["debug", "bare.obvasm"], &["list"]).stdout;
+    assert!(listed.contains("\n    2 ╭← store.global count\n"), "{listed}");
 }
 
 #[test]

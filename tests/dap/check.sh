@@ -22,6 +22,6 @@ cp "$here"/client/* "$here"/client/.npmrc "$client"
 (
   cd "$client"
   npm install --silent --no-fund --no-audit
-  node client.js "$target/debug/obverse" "$root/programs" "$messages/outside.jsonl"
+  node client.js "$target/debug/obverse" "$root/programs" "$messages"
 )
 "$venv/bin/python" "$here/schema.py" "$messages"

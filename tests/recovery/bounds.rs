@@ -2,6 +2,7 @@
 
 use crate::{Case, NEVER_S, Run};
 use obverse_recovery::{Ending, GiveUp, Outcome};
+use obverse_workcell::DigitalIo;
 
 fn outcomes(run: &Run) -> Vec<Outcome> {
     run.incidents.iter().map(|incident| incident.outcome.unwrap().0).collect()
@@ -11,7 +12,6 @@ fn attempts(run: &Run) -> usize {
     run.incidents.iter().map(|incident| incident.attempts.len()).sum()
 }
 
-/// How often the output of the sequence under `otherwise` was toggled, going forward only.
 fn begun_anew(then: &str) -> Run {
     let source = format!(
         "error late {{
@@ -20,8 +20,8 @@ fn begun_anew(then: &str) -> Run {
           otherwise using other
           then {then}
         }}
-        sequence other {{ move 5 mm up  move 5 mm down }}
-        sequence main {{ set 1 high  move 10 mm up  move 10 mm down  throw late }}"
+        sequence other {{ toggle 5 }}
+        sequence main {{ set 1 high  move 10 mm up  set 2 high  throw late }}"
     );
     Case::new(&source, NEVER_S).run()
 }
@@ -65,7 +65,7 @@ fn what_the_run_got_past_may_be_gone_back_for_again() {
                            otherwise using other  then {then} }}
             sequence other {{ toggle 3 }}
             sequence part {{ move 10 mm up  if not input 0 {{ throw late }}  move 10 mm down }}
-            sequence main {{ repeat 3 {{ call part }} }}"
+            sequence main {{ repeat 3 times {{ call part }} }}"
         );
         Case::new(&source, NEVER_S).run()
     };

@@ -215,7 +215,7 @@ fn what_another_error_takes_back_is_noticed_again_if_it_holds_still() {
     };
     let holds = with_input_0(&[(0.5, true)]);
     assert_eq!(holds.ending, Ending::Finished);
-    assert_eq!(holds.steps.told, ["Fault", "Back", "Again", "Fault", "Recovered"]);
+    assert_eq!(holds.steps.told, ["Fault", "Back", "Again", "Fault", "Recovered", "GivenUp"]);
     assert!(holds.sim.output(7) && holds.is_identical);
     // It has ceased to hold by the time the run goes forward again.
     let ceased = with_input_0(&[(0.5, true), (1.0, false)]);

@@ -15,14 +15,14 @@ pub(crate) type Arguments = run::Arguments;
 
 pub(crate) fn run(arguments: &Arguments) -> Result {
     let program = load::program_with(&arguments.file, &arguments.parameters.parameters)?;
-    let (mut cell, file) = run::workcell(arguments, &program)?;
+    let (mut cell, file, before) = run::workcell(arguments, &program)?;
     let mut machine = load::machine(&program, &cell, &file)?;
     let module = program.verified.module();
     let kept = Kept::read(arguments.recovering.policy.memory.as_deref(), &program, &file.name)?;
     let mut memory = kept.memory();
     let mut tape = taping::create(arguments.tape.as_deref())?;
     let start = machine.digest(&cell);
-    let mut rig = Rig::of(arguments, &program, (&mut machine, &mut cell), tape.as_mut())?;
+    let mut rig = Rig::of(arguments, &program, (&mut machine, &mut cell), tape.as_mut(), before)?;
     run::head(arguments, &file.name);
     let (there, _) = run::there(arguments, rig.driven(), &mut memory);
     let driven = rig.driven();

@@ -141,7 +141,7 @@ fn in_its_cell(arguments: &Arguments, program: Program) -> std::result::Result<C
     let (cell, file) = load::workcell(&program, arguments.cell.as_deref(), 0)?;
     // Says what is missing, with its place.
     load::machine(&program, &cell, &file)?;
-    let plan = Plan::new(cell.cell()).led(|sim| arguments.after.lead(sim, &file))?;
+    let plan = Plan::new(cell.cell()).led(|sim| arguments.after.lead(sim, &file).map(drop))?;
     let report = obverse_preflight::check(&program.verified, plan).map_err(|errors| {
         Problem::new(errors.iter().map(ToString::to_string).collect::<Vec<_>>().join("; "))
     })?;

@@ -6,7 +6,8 @@
 use super::Result;
 use crate::load::Program;
 use crate::problem::{Problem, plain};
-use crate::{Outcome, load, show, taping};
+use crate::taping::Named;
+use crate::{Outcome, after, load, show, taping};
 use obverse_dap::{Attach, Begin, Ended, Launch, Loaded, Wanted, serve};
 use std::io::{Read, Write};
 use std::net::{Ipv4Addr, TcpListener, TcpStream};
@@ -19,12 +20,14 @@ standard error. `launch` understands:
   program      the program: source, assembly text or module
   cell         the workcell file, in place of the one that the program names
   seed         what all chance in the workcell follows from (0)
+  after        the program after which it begins, run in the same workcell first
   stopOnEntry  stop before the first action (false)
   stopAtEnd    stay at the end of the program, from where one can go back (true)
 `attach` opens the tape of a run at its end; it understands:
   tape         the tape file
   program      the program that it must be of; a tape has its own
-  cell         the workcell file to try otherwise in, in place of the tape's";
+  cell         the workcell file to try otherwise in, in place of the tape's
+  after        the program that the run began after, in place of where the tape says it is";
 
 #[derive(clap::Args)]
 #[command(after_help = AFTER_HELP)]
@@ -100,11 +103,12 @@ fn attached(attach: &Attach) -> std::result::Result<Loaded, Problem> {
         }
         None => opened.paths(),
     };
-    let start = opened.start(attach.cell.as_deref());
+    let named = Named { cell: attach.cell.as_deref(), after: attach.after.as_deref() };
+    let start = opened.start(named);
     let mut notes = vec![opened.title(), opened.ending()];
     notes.extend(opened.lacks(start.as_ref().err()));
     let start = match start {
-        Err(problem) if attach.cell.is_some() => return Err(problem),
+        Err(problem) if named.is_any() => return Err(problem),
         start => start.ok().map(Box::new),
     };
     let recording = Box::new(opened.file.recording);
@@ -125,13 +129,15 @@ fn paths(program: &Program) -> Vec<Option<PathBuf>> {
 fn launched(launch: &Launch) -> std::result::Result<Loaded, Problem> {
     let program = load::quietly(&launch.program)?;
     let named = launch.cell.as_deref();
-    let (cell, file) = load::workcell(&program, named, launch.seed)?;
+    let (mut cell, file) = load::workcell(&program, named, launch.seed)?;
+    after::lead(launch.after.as_deref(), &mut cell, &file)?;
     load::machine(&program, &cell, &file)?;
     let paths = paths(&program);
     let notes = program.source.iter().flat_map(show::diagnostic_lines).collect();
     let place = file.name;
     let mut notes: Vec<String> = notes;
-    notes.push(format!("{} in {place}, seed {}", launch.program.display(), launch.seed));
+    let after = after::words(launch.after.as_deref());
+    notes.push(format!("{} in {place}, seed {}{after}", launch.program.display(), launch.seed));
     Ok(Loaded { program: program.verified, begin: Begin::Live(Box::new(cell)), paths, notes })
 }
 

@@ -1,6 +1,7 @@
 //! `obverse debug`: walk through a run in both directions.
 
 use super::Result;
+use crate::after::{self, AfterArguments};
 use crate::debug::{Face, Front, Lines};
 use crate::load;
 use crate::parameters::ParameterArguments;
@@ -8,6 +9,7 @@ use crate::problem::{Problem, plain};
 use crate::recovering::{Kept, PolicyArguments};
 use crate::report::Report;
 use crate::story::Story;
+use crate::taping::Named;
 use crate::{Outcome, lacking, taping, write};
 use obverse_debugger::{Policy, Run, Session};
 use obverse_sim::Sim;
@@ -39,6 +41,8 @@ pub(crate) struct Arguments {
     #[arg(long, default_value_t = LIMIT, value_name = "N")]
     limit: u64,
     #[command(flatten)]
+    after: AfterArguments,
+    #[command(flatten)]
     parameters: ParameterArguments,
     #[command(flatten)]
     policy: PolicyArguments,
@@ -63,14 +67,15 @@ fn live(arguments: &Arguments, file: &Path) -> Result {
         let inputs: Vec<PathBuf> = program.files().into_iter().chain(cell).collect();
         write::check_text(memory, "memory", &inputs)?;
     }
-    let (cell, cell_file) = load::workcell(&program, named, arguments.seed)?;
+    let (mut cell, cell_file) = load::workcell(&program, named, arguments.seed)?;
+    arguments.after.lead(&mut cell, &cell_file)?;
     let kept = Kept::read(arguments.policy.memory.as_deref(), &program, &cell_file.name)?;
     let lines = Lines::of(arguments.commands.as_deref(), arguments.json)?;
     let run = Run::new(&program.verified, cell)
         .map_err(|errors| Problem::several(lacking::messages(&program, &cell_file, &errors)))?;
     if !arguments.json {
-        let name = file.display();
-        write::line(&format!("{name} in {}, seed {}", cell_file.name, arguments.seed));
+        let (name, after) = (file.display(), after::words(arguments.after.after.as_deref()));
+        write::line(&format!("{name} in {}, seed {}{after}", cell_file.name, arguments.seed));
     }
     converse(arguments, run.simulated(None), Some(&kept), lines)
 }
@@ -84,10 +89,12 @@ fn post_mortem(arguments: &Arguments, tape: &Path, file: Option<&Path>) -> Resul
     }
     let lines = Lines::of(arguments.commands.as_deref(), arguments.json)?;
     let run = opened.run()?;
-    let start = opened.start(arguments.cell.as_deref());
+    let (cell, after) = (arguments.cell.as_deref(), arguments.after.after.as_deref());
+    let named = Named { cell, after };
+    let start = opened.start(named);
     let (start, lacks) = match start {
         Ok(start) => (Some(start), None),
-        Err(problem) if arguments.cell.is_some() => return Err(problem),
+        Err(problem) if named.is_any() => return Err(problem),
         Err(problem) => (None, Some(problem)),
     };
     let head = &opened.file.head;
@@ -97,6 +104,7 @@ fn post_mortem(arguments: &Arguments, tape: &Path, file: Option<&Path>) -> Resul
             "program": head.program,
             "cell": head.cell,
             "seed": head.seed,
+            "after": head.after.as_ref().map(|before| &before.program),
             "ending": opened.file.ending,
             "torn_bytes": opened.file.torn_bytes,
             "can_try": start.is_some(),

@@ -47,18 +47,21 @@ struct Row {
 
 pub(super) fn run(arguments: &run::Arguments) -> Result {
     let program = load::program_with(&arguments.file, &arguments.parameters.parameters)?;
-    let (cell, file) = run::workcell(arguments, &program)?;
-    let mut cell = Sim::new(&cell.cell().nominal(), arguments.seed);
+    let (cell, file) = load::cell(&program, arguments.cell.as_deref())?;
+    let mut cell = Sim::new(&cell.nominal(), arguments.seed);
+    arguments.after.lead(&mut cell, &file)?;
+    let begin_s = cell.now_s();
     let mut machine = load::machine(&program, &cell, &file)?.without_tape();
     run::head(arguments, &file.name);
     let module = program.verified.module();
-    let mut cycle = Cycle::new(module);
+    let mut cycle = Cycle::new(module, begin_s);
     let limits = Limits::instructions(arguments.limit);
     let ending = drive(&mut machine, Direction::Forward, limits, &mut cell, &mut cycle);
     cycle.end(cell.now_s());
+    let total_s = cell.now_s() - begin_s;
     match arguments.json {
-        true => tell_machines(module, &cycle, &ending, cell.now_s()),
-        false => tell(module, &cycle, &ending, cell.now_s()),
+        true => tell_machines(module, &cycle, &ending, total_s),
+        false => tell(module, &cycle, &ending, total_s),
     }
     Ok(if ending == Ending::Finished { Outcome::Done } else { Outcome::EndedOtherwise })
 }

@@ -1,7 +1,7 @@
 //! `obverse run`: run a program on the simulated workcell and tell what happens.
 
 use super::{Result, dry};
-use crate::after::AfterArguments;
+use crate::after::{self, AfterArguments};
 use crate::load::{self, Program, Workcell};
 use crate::parameters::ParameterArguments;
 use crate::problem::Problem;
@@ -10,6 +10,7 @@ use crate::report::{self, Report};
 use crate::story::Story;
 use crate::taping::{self, Rig};
 use crate::{Outcome, show, write};
+use obverse_debugger::Before;
 use obverse_recovery::{
     Bounds, Driven, Ending, Incident, Memory, PERSON_S, Recovery, drive_in, recover_in,
 };
@@ -53,7 +54,7 @@ pub(crate) struct RunArguments {
     pub(crate) common: Arguments,
     /// Tell how long it takes, by sequence and by action, and not what happens: everything is at
     /// the place that the workcell file gives it, and nothing is noisy.
-    #[arg(long, conflicts_with_all = ["tape", "after"])]
+    #[arg(long, conflicts_with = "tape")]
     dry: bool,
 }
 
@@ -63,12 +64,12 @@ pub(crate) fn run(arguments: &RunArguments) -> Result {
     }
     let arguments = &arguments.common;
     let program = load::program_with(&arguments.file, &arguments.parameters.parameters)?;
-    let (mut cell, file) = workcell(arguments, &program)?;
+    let (mut cell, file, before) = workcell(arguments, &program)?;
     let mut machine = load::machine(&program, &cell, &file)?;
     let kept = Kept::read(arguments.recovering.policy.memory.as_deref(), &program, &file.name)?;
     let mut memory = kept.memory();
     let mut tape = taping::create(arguments.tape.as_deref())?;
-    let mut rig = Rig::of(arguments, &program, (&mut machine, &mut cell), tape.as_mut())?;
+    let mut rig = Rig::of(arguments, &program, (&mut machine, &mut cell), tape.as_mut(), before)?;
     head(arguments, &file.name);
     let (ending, incidents) = there(arguments, rig.driven(), &mut memory);
     let recorded = rig
@@ -93,11 +94,12 @@ pub(crate) fn outcome(is_done: bool, recorded: std::result::Result<(), Problem>)
     }
 }
 
-/// The workcell of a run, once it is sure that its tape and its memory have a place to go.
+/// The workcell of a run and what was run in it before, once it is sure that its tape and its
+/// memory have a place to go.
 pub(crate) fn workcell(
     arguments: &Arguments,
     program: &Program,
-) -> std::result::Result<(Sim, Workcell), Problem> {
+) -> std::result::Result<(Sim, Workcell, Option<Before>), Problem> {
     let named = arguments.cell.as_deref();
     let cell = load::workcell_path(program, named);
     let mut inputs: Vec<PathBuf> = program.files().into_iter().chain(cell).collect();
@@ -109,16 +111,15 @@ pub(crate) fn workcell(
         write::check_text(memory, "memory", &inputs)?;
     }
     let (mut sim, file) = load::workcell(program, named, arguments.seed)?;
-    arguments.after.lead(&mut sim, &file)?;
-    Ok((sim, file))
+    let before = arguments.after.lead(&mut sim, &file)?;
+    Ok((sim, file, before))
 }
 
 /// Say what is about to run.
 pub(crate) fn head(arguments: &Arguments, cell_name: &str) {
     if !arguments.json {
         let file = arguments.file.display();
-        let after = arguments.after.after.as_ref();
-        let after = after.map(|first| format!(", after {}", first.display())).unwrap_or_default();
+        let after = after::words(arguments.after.after.as_deref());
         write::line(&format!("{file} in {cell_name}, seed {}{after}", arguments.seed));
     }
 }

@@ -1,7 +1,7 @@
 //! The source and the instructions around where the session stands, with the class of each line.
 
 use super::{Answer, Done, Front};
-use crate::commands::reach::margin::sign;
+use crate::commands::reach::margin::{Mark, sign};
 use crate::story;
 use crate::write::printable;
 use obverse_bytecode::{FunctionKind, Module};
@@ -33,7 +33,7 @@ impl Front<'_> {
         let (number, class) = match &place {
             Some(place) => {
                 let file = self.file_of(&place.file);
-                let class = file.and_then(|file| self.margin.class(file, place.line));
+                let class = file.and_then(|file| self.margin.mark(file, place.line).class);
                 let is_one = module.sources.len() == 1;
                 let name = |place: &obverse_debugger::SourcePlace| match is_one {
                     true => place.line.to_string(),
@@ -42,7 +42,7 @@ impl Front<'_> {
                 (name(place), class)
             }
             None if within.is_empty() => return self.bare_line(position.pc),
-            None => (position.pc.to_string(), self.margin.class(0, position.pc as usize)),
+            None => (position.pc.to_string(), self.margin.mark(0, position.pc as usize).class),
         };
         self.drawn(&format!("{number:>4} "), class, &format!(" {said}{within}"), false)
     }
@@ -93,8 +93,9 @@ impl Front<'_> {
         let line = |(number, text): (usize, &str)| {
             let is_here = here == Some(number);
             let arrow = if is_here { '>' } else { ' ' };
-            let class = self.margin.class(file, number);
-            self.drawn(&format!("{arrow}{number:>4}  "), class, &format!(" {text}"), is_here)
+            let Mark { bracket, class } = self.margin.mark(file, number);
+            let before = format!("{arrow}{number:>4} {bracket}");
+            self.drawn(&before, class, &format!(" {text}"), is_here)
         };
         lines.map(line).collect()
     }
@@ -148,7 +149,10 @@ pub(super) fn disassemble(front: &mut Front<'_>, _: &str) -> Done {
         let arrow = if pc == here { '>' } else { ' ' };
         let text = obverse_bytecode::text::instruction(front.module, pc).unwrap_or_default();
         let class = class_of(front.module, pc);
-        front.drawn(&format!("{arrow}{pc:>4}  "), class, &format!(" {text}"), pc == here)
+        // Beside instructions there are brackets where no source has them.
+        let has_source = !front.module.source_map.is_empty();
+        let bracket = if has_source { ' ' } else { front.margin.mark(0, pc as usize).bracket };
+        front.drawn(&format!("{arrow}{pc:>4} {bracket}"), class, &format!(" {text}"), pc == here)
     };
     Ok(Answer::lines(pcs.map(line).collect()))
 }

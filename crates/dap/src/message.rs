@@ -100,6 +100,8 @@ pub struct Launch {
     /// What all chance in the workcell follows from.
     #[serde(default)]
     pub seed: u64,
+    /// The program after which it begins, run in the same workcell first.
+    pub after: Option<PathBuf>,
     /// Whether to stop before the first action.
     #[serde(default)]
     pub stop_on_entry: bool,
@@ -126,6 +128,8 @@ pub struct Attach {
     /// The workcell file in which to try what would have been, in place of the tape's.
     #[serde(default, alias = "workcell")]
     pub cell: Option<PathBuf>,
+    /// The program that the run began after, in place of where the tape says that it is.
+    pub after: Option<PathBuf>,
 }
 
 /// What a client wants to debug.

@@ -14,7 +14,7 @@ use std::io::{self, Write};
 
 /// A tape file.
 pub const TAPE: Format =
-    Format { magic: *b"OBVTAPE\0", version: 5, name: "tape", remedy: "record the run again" };
+    Format { magic: *b"OBVTAPE\0", version: 6, name: "tape", remedy: "record the run again" };
 
 /// The most instructions that one piece tells of: who writes begins another long before.
 pub const MAX_PIECE_TICKS: u64 = 1 << 24;
@@ -30,10 +30,22 @@ pub struct Head {
     pub cell: Option<String>,
     /// The seed of the workcell.
     pub seed: u64,
+    /// The program that was run in the workcell before it; none where the workcell was as its file
+    /// says.
+    pub after: Option<Before>,
     /// What the program asks of the workcell that does not change.
     pub facts: Facts,
     /// The workcell at the start.
     pub start: World,
+}
+
+/// A program that was run in the workcell before the one of a tape.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Before {
+    /// The program, as it was named.
+    pub program: String,
+    /// What tells its module from others, as [`fingerprint`](obverse_bytecode::fingerprint) does.
+    pub fingerprint: u64,
 }
 
 /// What happened since the piece before.

@@ -50,7 +50,7 @@ pub struct Taped<'t, 'w, 'p, C> {
     order: Option<(Order, u64)>,
 }
 
-/// What a tape file begins with, of a run that is about to begin.
+/// What a tape file begins with, of a run that is about to begin with nothing run before it.
 ///
 /// # Errors
 /// If the module is larger than one may be.
@@ -61,7 +61,8 @@ pub fn head(
     seed: u64,
 ) -> Result<Head, DecodeError> {
     let (facts, start) = (facts(module, cell), world(cell));
-    Ok(Head { module: encode(module)?, program, cell: cell_name, seed, facts, start })
+    let module = encode(module)?;
+    Ok(Head { module, program, cell: cell_name, seed, after: None, facts, start })
 }
 
 impl<'t, 'w, 'p, C: Workcell> Taped<'t, 'w, 'p, C> {

@@ -1,67 +1,54 @@
-// A client of others drives the debug adapter: to a breakpoint, on, back to what cannot be taken
-// back, and over it in the recording.
+// A client of others drives the debug adapter: through a run to a breakpoint, on, and back to what
+// cannot be taken back; and through the tape of a run, from its end.
 //
-//     node client.js BINARY PROGRAMS TRANSCRIPT
+//     node client.js BINARY PROGRAMS TRANSCRIPTS
 "use strict";
 
 const assert = require("assert");
 const cp = require("child_process");
 const fs = require("fs");
-const net = require("net");
 const path = require("path");
-const { DebugClient } = require("@vscode/debugadapter-testsupport");
+const { session } = require("./adapter");
 
-const [binary, programs, transcript] = process.argv.slice(2);
-const glue = path.join(programs, "glue.obv");
-const lineOf = (text) =>
-  fs.readFileSync(glue, "utf8").split("\n").findIndex((line) => line.trim().startsWith(text)) + 1;
+const [binary, programs, transcripts] = process.argv.slice(2);
 
-/** An adapter on a port, and the port. */
-function listen() {
-  const adapter = cp.spawn(binary, ["dap", "--port", "0"], { stdio: ["ignore", "ignore", "pipe"] });
-  return new Promise((resolve, reject) => {
-    let told = "";
-    adapter.on("error", reject);
-    adapter.stderr.on("data", (data) => {
-      told += data;
-      const found = told.match(/listening on port (\d+)/);
-      if (found) resolve({ adapter, port: Number(found[1]) });
-    });
-  });
+/** The line of a program that begins so. */
+function lineOf(program, text) {
+  const lines = fs.readFileSync(program, "utf8").split("\n");
+  const line = lines.findIndex((one) => one.trim().startsWith(text)) + 1;
+  assert.ok(line > 0, `${program} has no line ${text}`);
+  return line;
 }
 
-/** Keeps every message that the adapter sends, as it goes through. */
-function tap(port, messages) {
-  const server = net.createServer((client) => {
-    const adapter = net.connect(port, "127.0.0.1");
-    let bytes = Buffer.alloc(0);
-    client.pipe(adapter);
-    adapter.pipe(client);
-    adapter.on("data", (data) => {
-      bytes = Buffer.concat([bytes, data]);
-      for (;;) {
-        const end = bytes.indexOf("\r\n\r\n");
-        if (end < 0) return;
-        const length = Number(bytes.subarray(0, end).toString().match(/Content-Length: (\d+)/)[1]);
-        if (bytes.length < end + 4 + length) return;
-        messages.push(bytes.subarray(end + 4, end + 4 + length).toString());
-        bytes = bytes.subarray(end + 4 + length);
-      }
-    });
-    for (const socket of [client, adapter]) socket.on("error", () => socket.destroy());
-  });
-  return new Promise((resolve) => server.listen(0, "127.0.0.1", () => resolve(server)));
+/** Ask for something that ends in a stop; the stop. */
+async function stops(client, asked) {
+  const [stopped] = await Promise.all([client.waitForEvent("stopped"), asked()]);
+  return stopped.body;
 }
 
-async function main() {
-  const messages = [];
-  const { adapter, port } = await listen();
-  const server = await tap(port, messages);
-  const client = new DebugClient("node", "", "obverse");
-  client.defaultTimeout = 10000;
-  await client.start(server.address().port);
-  const never = lineOf("irreversible");
-  const behind = never + 8;
+/** Type something into the console that shows another moment; what it answers. */
+async function jumps(client, expression) {
+  let answer;
+  await stops(client, async () => {
+    answer = await client.evaluateRequest({ expression, context: "repl" });
+  });
+  return answer.body.result;
+}
+
+async function value(client, expression) {
+  const answer = await client.evaluateRequest({ expression, context: "watch" });
+  return answer.body.result;
+}
+
+async function top(client, threadId) {
+  const stack = await client.stackTraceRequest({ threadId });
+  return stack.body.stackFrames[0];
+}
+
+/** A run of a program, live: forward, in reverse up to what cannot be taken back, and rewound. */
+async function live(client) {
+  const glue = path.join(programs, "glue.obv");
+  const behind = lineOf(glue, "irreversible") + 8;
   await client.hitBreakpoint({ program: glue, seed: 1 }, { path: glue, line: behind });
   const threadId = (await client.threadsRequest()).body.threads[0].id;
   await assert.rejects(client.stepBackRequest({ threadId }), /the glue is on the block/);
@@ -69,26 +56,74 @@ async function main() {
     client.nextRequest({ threadId }),
     client.assertStoppedLocation("step", { line: behind + 1 }),
   ]);
-  await Promise.all([
-    client.reverseContinueRequest({ threadId }),
-    client.waitForEvent("stopped"),
-  ]);
-  const stack = await client.stackTraceRequest({ threadId });
-  assert.strictEqual(stack.body.stackFrames[0].line, behind);
-  const rewind = { expression: "rewind", context: "repl" };
-  await Promise.all([client.waitForEvent("stopped"), client.evaluateRequest(rewind)]);
-  await Promise.all([client.waitForEvent("stopped"), client.reverseContinueRequest({ threadId })]);
-  await Promise.all([client.waitForEvent("stopped"), client.reverseContinueRequest({ threadId })]);
-  const start = await client.stackTraceRequest({ threadId });
-  assert.ok(start.body.stackFrames[0].line !== behind);
-  const scopes = await client.scopesRequest({ frameId: start.body.stackFrames[0].id });
+  await stops(client, () => client.reverseContinueRequest({ threadId }));
+  assert.strictEqual((await top(client, threadId)).line, behind);
+  await jumps(client, "rewind");
+  await stops(client, () => client.reverseContinueRequest({ threadId }));
+  await stops(client, () => client.reverseContinueRequest({ threadId }));
+  const start = await top(client, threadId);
+  assert.ok(start.line !== behind);
+  const scopes = await client.scopesRequest({ frameId: start.id });
   for (const { variablesReference } of scopes.body.scopes) {
     await client.variablesRequest({ variablesReference });
   }
-  await client.disconnectRequest();
-  adapter.kill();
-  fs.writeFileSync(transcript, messages.join("\n") + "\n");
-  console.log(`an outside client was answered ${messages.length} times`);
+}
+
+/** The tape of a run whose first pin jams: what went wrong, and what the second would have done. */
+async function recorded(client) {
+  const program = path.join(programs, "bad_pin.obv");
+  const tape = path.join(transcripts, "bad_pin.tape");
+  const ran = cp.spawnSync(binary, ["run", program, "--seed", "1", "--tape", tape]);
+  assert.strictEqual(ran.status, 0, String(ran.stderr));
+  await client.initializeRequest();
+  const initialized = client.waitForEvent("initialized");
+  await client.attachRequest({ tape, program });
+  await initialized;
+  const source = { path: program };
+  const throws = lineOf(program, "throw pin_jams");
+  const picks = lineOf(program, "move to pin.grasp");
+  const asked = { source, breakpoints: [{ line: throws }, { line: picks }] };
+  const set = await client.setBreakpointsRequest(asked);
+  assert.ok(set.body.breakpoints.every((breakpoint) => breakpoint.verified));
+
+  const opened = await stops(client, () => client.configurationDoneRequest());
+  assert.match(opened.description, /at the end of the recording/);
+  const threadId = (await client.threadsRequest()).body.threads[0].id;
+  const [ended, steps] = [await value(client, "next_pin"), await value(client, "steps")];
+  assert.strictEqual(ended, "3");
+
+  // Back over the pick of the second pin to where the first jammed; the end is as it was.
+  const back = () => stops(client, () => client.reverseContinueRequest({ threadId }));
+  assert.strictEqual((await back()).reason, "breakpoint");
+  assert.strictEqual((await top(client, threadId)).line, picks);
+  await back();
+  assert.strictEqual((await top(client, threadId)).line, throws);
+  assert.strictEqual(await value(client, "held"), "pin_1");
+  await jumps(client, "live");
+  assert.strictEqual(await value(client, "steps"), steps);
+  assert.match(await jumps(client, "error"), new RegExp(`:${throws}\\b`));
+  assert.strictEqual((await top(client, threadId)).line, throws);
+
+  // What would have been, had the second pin been fetched first.
+  await jumps(client, "rewind 0");
+  await stops(client, () => client.nextRequest({ threadId }));
+  assert.match(await jumps(client, "what-if"), /^what-if/);
+  await client.evaluateRequest({ expression: "set next_pin = 2", context: "repl" });
+  await client.setBreakpointsRequest({ source, breakpoints: [{ line: throws }] });
+  const tried = await stops(client, () => client.continueRequest({ threadId }));
+  assert.match(tried.description, /the program has ended/, "nothing is thrown");
+  assert.strictEqual(await value(client, "next_pin"), "3");
+  await jumps(client, "leave");
+  await jumps(client, "live");
+  assert.strictEqual(await value(client, "steps"), steps, "the recording is as it was");
+}
+
+async function main() {
+  for (const [name, hold] of Object.entries({ outside: live, outside_tape: recorded })) {
+    const transcript = path.join(transcripts, `${name}.jsonl`);
+    const count = await session(binary, transcript, hold);
+    console.log(`${name}: an outside client was sent ${count} messages`);
+  }
 }
 
 main().then(

@@ -52,6 +52,17 @@ impl Pens {
             Standing::Never => self.never,
         }
     }
+
+    /// The part of a bracket that is beside a line.
+    pub(super) fn bracket(&self, edge: Edge) -> char {
+        match edge {
+            Edge::Top => self.top,
+            Edge::Side => self.side,
+            Edge::Foot => self.foot,
+            Edge::Alone => self.alone,
+            Edge::Nothing => ' ',
+        }
+    }
 }
 
 /// How long the lines of horizons are, with their reasons.
@@ -62,7 +73,7 @@ const LINES_COLUMNS: usize = 32;
 
 /// What is drawn beside a line.
 #[derive(Clone, Copy, PartialEq, Eq)]
-enum Edge {
+pub(super) enum Edge {
     Top,
     Side,
     Foot,
@@ -87,13 +98,7 @@ pub(super) fn picture(page: &Page, pens: &Pens) -> String {
             Edge::Top | Edge::Alone => names(&row.stretches()),
             Edge::Side | Edge::Foot | Edge::Nothing => String::new(),
         };
-        let bracket = match edge {
-            Edge::Top => pens.top,
-            Edge::Side => pens.side,
-            Edge::Foot => pens.foot,
-            Edge::Alone => pens.alone,
-            Edge::Nothing => ' ',
-        };
+        let bracket = pens.bracket(edge);
         let class = row.standing().map_or(' ', |standing| pens.of(standing));
         let (number, text) = (row.number, row.text.as_str());
         let line = format!("{number:>digits$}  {name:>letters$}{bracket} {class} {text}");
@@ -125,7 +130,7 @@ type Bracket = (usize, usize, Option<(usize, usize)>);
 
 /// A bracket is around lines of one function, one below the other, that can go back equally far.
 /// A line whose statements cannot has one of its own.
-fn edges(rows: &[Row]) -> Vec<Edge> {
+pub(super) fn edges(rows: &[Row]) -> Vec<Edge> {
     let mut edges = vec![Edge::Nothing; rows.len()];
     let mut open: Option<Bracket> = None;
     let mut close = |open: Option<Bracket>| {

@@ -1,29 +1,43 @@
-//! The margin alone: the class of each line that does anything, for who shows parts of a program.
+//! The margin alone: the class of each line that does anything, and the brackets around lines that
+//! can go back equally far, for who shows parts of a program.
 
-use super::draw::Pens;
+use super::draw::{Pens, edges};
 use super::page::Page;
 use super::words::Words;
 use obverse_bytecode::Module;
 use obverse_reach::{Reach, Standing};
 use std::collections::HashMap;
 
-/// The class of what stands on lines.
+/// What is drawn beside a line.
+#[derive(Clone, Copy)]
+pub(crate) struct Mark {
+    /// The part of a bracket.
+    pub(crate) bracket: char,
+    /// The class of what stands there, if that does anything.
+    pub(crate) class: Option<Standing>,
+}
+
+/// What is drawn beside the lines of a program.
 pub(crate) struct Margin {
     /// By file and line, from 1; of a program without a source, by instruction.
-    classes: HashMap<(u16, usize), Standing>,
+    marks: HashMap<(u16, usize), Mark>,
 }
 
 impl Margin {
     /// That of a program.
     pub(crate) fn of(module: &Module) -> Self {
         let page = Page::of(module, &Reach::of(module), &Words::new(module));
-        let class = |row: &super::page::Row| Some(((row.file, row.number), row.standing()?));
-        Self { classes: page.rows.iter().filter_map(class).collect() }
+        let marks = page.rows.iter().zip(edges(&page.rows)).map(|(row, edge)| {
+            let mark = Mark { bracket: Pens::LINES.bracket(edge), class: row.standing() };
+            ((row.file, row.number), mark)
+        });
+        Self { marks: marks.collect() }
     }
 
-    /// The class of a line, if it does anything.
-    pub(crate) fn class(&self, file: u16, line: usize) -> Option<Standing> {
-        self.classes.get(&(file, line)).copied()
+    /// What is beside a line.
+    pub(crate) fn mark(&self, file: u16, line: usize) -> Mark {
+        let nothing = Mark { bracket: ' ', class: None };
+        self.marks.get(&(file, line)).copied().unwrap_or(nothing)
     }
 }
 
