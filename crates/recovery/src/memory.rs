@@ -19,7 +19,8 @@ pub const DEPTH_MAX: usize = 16;
 pub const ATTEMPTS_MAX: usize = 16;
 /// How much longer a nearer depth may be expected to take than the best, as a share, where it was
 /// never tried, and how many attempts at it halve that: where far ones have helped nobody knows
-/// whether near ones would, until they have been tried.
+/// whether near ones would, until they have been tried. As the first attempt and as a later one are
+/// two things: a search that goes on may come upon what its first point has missed.
 const CURIOSITY: f64 = 0.3;
 const FEW: f64 = 5.0;
 /// How many incidents must be known in which going back as far as can be was in vain, before it is
@@ -524,6 +525,24 @@ mod tests {
             tried.push(choice.actions.unwrap());
         }
         assert!(tried.iter().all(|&depth| depth <= 3), "{tried:?}");
+    }
+
+    #[test]
+    fn whether_a_search_near_helps_in_the_end_is_tried_before_it_is_believed_that_it_does_not() {
+        // Going far has helped wherever near had failed once; nobody has tried near twice.
+        let mut memory = Memory::default();
+        for _ in 0..20 {
+            memory.learn("jam", "here", &[1], true);
+            memory.learn("jam", "here", &[1, 4], true);
+        }
+        let near = choose(&mut memory, &[1]).actions.unwrap();
+        assert!(near < 4, "{near}");
+        for _ in 0..20 {
+            for near in 1..4 {
+                memory.learn("jam", "here", &[1, near, 4], true);
+            }
+        }
+        assert_eq!(choose(&mut memory, &[1]).actions, Some(4), "it has been tried often enough");
     }
 
     #[test]

@@ -72,7 +72,7 @@ pub(crate) struct Arguments {
     #[arg(long, value_name = "FILE")]
     memory: Option<PathBuf>,
     /// From how many assemblies, of seeds of their own, the strategy `learned` learns beforehand.
-    #[arg(long, default_value_t = 1024, value_name = "N")]
+    #[arg(long, default_value_t = 8192, value_name = "N")]
     learn: u64,
     #[command(flatten)]
     parameters: ParameterArguments,
