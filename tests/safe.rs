@@ -178,7 +178,7 @@ fn run(program: &Program, number: u64, memory: &mut Memory) -> BTreeSet<Met> {
         person_s: 300.0,
         seed: number,
         operator: &mut Releases(releases),
-        foresight: Some(&mut Clairvoyant),
+        foresight: Some(&mut Clairvoyant::default()),
         incidents: Vec::new(),
     };
     let limits = Limits::instructions(2_000_000);

@@ -43,9 +43,11 @@ fn strategy(text: &str) -> Result<Strategy, String> {
             Err("only `obverse trials` knows what will come of going back".to_owned())
         }
         Some(strategy) => Ok(strategy),
-        None => Err("say declared, stop, retry, back-up, restart, explicit, fixed:N, escalating \
-                     or learned"
-            .to_owned()),
+        None => Err(format!(
+            "say declared, stop, retry, back-up, restart, explicit, fixed:N with N from 1 to {}, \
+             escalating or learned",
+            Strategy::FIXED_MAX
+        )),
     }
 }
 

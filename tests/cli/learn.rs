@@ -121,6 +121,29 @@ fn what_is_learned_replaces_what_was_learned_and_nothing_else() {
     }
 }
 
+/// Where nothing was found out nothing is written, and what was learned before stays.
+#[test]
+fn without_evidence_nothing_is_written() {
+    let bench = Bench::new("learn_nothing");
+    let few = ["learn", "peg_search.obv", ACTION, "--runs", "5", "--candidates", "24"];
+    bench.refuses(&few, &["--runs is 5", "24 candidates", "at least 31"]);
+    let enough = ["learn", "peg_search.obv", ACTION, "--runs", "31", "--candidates", "24"];
+    assert!(bench.run(&enough).code < 2, "it is the least");
+    // A push that is longer than the hole is deep never comes to its end.
+    let source = String::from_utf8(bench.read("peg_search.obv")).expect("text");
+    let call = "insert_with_spiral_search(";
+    let deeper = source.replace(&format!("{call}depth: 30 mm"), &format!("{call}depth: 90 mm"));
+    assert_ne!(source, deeper, "the call is there");
+    bench.write("peg_search.obv", deeper);
+    bench.ends(1, &learn(&[]));
+    assert!(!bench.path("best").exists(), "nothing was learned");
+    let ran = bench.ends(1, &learn(&["--json"]));
+    assert_eq!(ran.summary()["outcome"], "nothing learned");
+    assert_eq!(ran.summary()["out"], serde_json::Value::Null);
+    let told = bench.ends(1, &learn(&["--out", "other"])).stdout;
+    assert!(told.contains("other: not written") && told.contains("0 of "), "{told}");
+}
+
 #[test]
 fn what_cannot_be_learned_is_said() {
     let bench = Bench::new("learn_refused");

@@ -12,6 +12,7 @@ mod lsp;
 mod memory;
 mod moves;
 mod reach;
+mod stops;
 mod support;
 mod trials;
 mod wrong_files;

@@ -64,13 +64,13 @@ fn shards_that_do_not_make_a_campaign_are_refused() {
     }
     let two = bench.read("two");
     bench.write("torn", &two[..two.len() - 9]);
-    let other = String::from_utf8(two).expect("text").replace("\"format\":3", "\"format\":7");
+    let other = String::from_utf8(two).expect("text").replace("\"format\":4", "\"format\":7");
     bench.write("other", other);
     bench.refuses(&["trials", "--merge", "one"], &["shard 2/2 is missing"]);
     bench.refuses(&["trials", "--merge", "one", "one", "two"], &["one: this is shard 1/2"]);
     bench.refuses(&["trials", "--merge", "one", "foreign"], &["foreign: ", "seed is 1, and not 0"]);
     bench.refuses(&["trials", "--merge", "one", "torn"], &["torn: ", "not whole"]);
-    bench.refuses(&["trials", "--merge", "one", "other"], &["other: ", "format 7", "format 3"]);
+    bench.refuses(&["trials", "--merge", "one", "other"], &["other: ", "format 7", "format 4"]);
     bench.refuses(&["trials", "--merge", "one", "sheets.obv"], &["sheets.obv: ", "no file of a"]);
     bench.refuses(&["trials", "--merge", "one", "gone"], &["gone: "]);
     let over = ["trials", "--merge", "one", "two", "--out", "one"];
@@ -219,6 +219,7 @@ fn wrong_words_are_refused() {
     refuses(&["--strategy", "luck"], &["no strategy `luck`", "escalating"]);
     refuses(&["--strategy", "stop,stop"], &["stop is named twice"]);
     refuses(&["--strategy", "fixed:0"], &["fixed:0", "number of actions"]);
+    refuses(&["--strategy", "fixed:1001"], &["fixed:1001", "from 1 to 1000"]);
     refuses(&["--jobs", "0"], &["--jobs is 0"]);
     refuses(&["--person", "NaN"], &["--person is NaN"]);
     refuses(&["--person=-1"], &["--person is -1"]);

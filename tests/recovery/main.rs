@@ -171,7 +171,7 @@ impl Case {
             person_s: 300.0,
             seed: 0,
             operator: &mut Releases(self.releases),
-            foresight: Some(&mut Clairvoyant),
+            foresight: Some(&mut Clairvoyant::default()),
             incidents: Vec::new(),
         };
         let limits = Limits::instructions(1_000_000);

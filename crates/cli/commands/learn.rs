@@ -70,6 +70,15 @@ pub(crate) fn run(arguments: &Arguments) -> Result {
     let axes = axes(action)?;
     let (cell, file) = load::cell(&program, arguments.cell.as_deref())?;
     let values = space::candidates(&axes, arguments.candidates);
+    let least = obverse_learn::least_runs(values.len());
+    if arguments.runs < least {
+        return Err(Problem::new(format!(
+            "--runs is {}, which is too few to try {} candidates and to confirm the choice: at \
+             least {least}, or fewer --candidates",
+            arguments.runs,
+            values.len()
+        )));
+    }
     let programs = values
         .iter()
         .map(|values| candidate(arguments, &axes, values))
@@ -82,12 +91,31 @@ pub(crate) fn run(arguments: &Arguments) -> Result {
     let found = Found { axes, values, learned };
     let kept = found.file(arguments, digest);
     let out = out(arguments);
-    write::file(&out, kept.to_text().as_bytes())?;
-    match arguments.json {
-        true => found.report(&kept, &out),
-        false => write::out(&found.story(&kept, &out)),
+    let has_learned = found.learned.confirmed.successes > 0;
+    if has_learned {
+        write::file(&out, kept.to_text().as_bytes())?;
     }
-    Ok(Outcome::Done)
+    match arguments.json {
+        true => found.report(&kept, has_learned.then_some(&out)),
+        false => {
+            let told = match has_learned {
+                true => format!("{}: written\n", out.display()),
+                false => nothing(arguments, &out),
+            };
+            write::out(&(found.story(&kept) + &told));
+        }
+    }
+    Ok(if has_learned { Outcome::Done } else { Outcome::EndedOtherwise })
+}
+
+/// What is said where no run of the best succeeded.
+fn nothing(arguments: &Arguments, out: &Path) -> String {
+    format!(
+        "{}: not written: none of these runs succeeded, and so nothing is known of which values \
+         are good; `obverse run {} --seed 1 --strategy stop` shows what goes wrong\n",
+        out.display(),
+        arguments.program.display()
+    )
 }
 
 /// What can be told to be wrong before anything is read.
@@ -250,7 +278,7 @@ impl Found {
         order
     }
 
-    fn story(&self, kept: &ParameterFile, out: &Path) -> String {
+    fn story(&self, kept: &ParameterFile) -> String {
         let Learned { standings, rounds, confirmed, defaults, best } = &self.learned;
         let left = standings.iter().filter(|standing| standing.left_out.is_none()).count();
         let mut text = format!(
@@ -288,7 +316,6 @@ impl Found {
         if *best != 0 {
             text.push_str(&line("  defaults", defaults));
         }
-        text.push_str(&format!("{}: written\n", out.display()));
         text
     }
 
@@ -320,7 +347,8 @@ impl Found {
         row
     }
 
-    fn report(&self, kept: &ParameterFile, out: &Path) {
+    /// The same for machines, with the file that was written, if one was.
+    fn report(&self, kept: &ParameterFile, out: Option<&PathBuf>) {
         for (index, standing) in self.learned.standings.iter().enumerate() {
             let values: Map<String, serde_json::Value> = self
                 .axes
@@ -351,10 +379,10 @@ impl Found {
             ("rounds", json!(self.learned.rounds)),
             ("parameters", json!(kept.parameters)),
             ("evidence", json!(kept.evidence)),
-            ("out", json!(out.display().to_string())),
+            ("out", json!(out.map(|out| out.display().to_string()))),
         ];
         let more = fields.map(|(name, value)| (name.to_owned(), value)).into_iter().collect();
-        report::summary("done", more, Map::new());
+        report::summary(if out.is_some() { "done" } else { "nothing learned" }, more, Map::new());
     }
 }
 

@@ -9,5 +9,5 @@ pub mod search;
 pub mod space;
 
 pub use file::{Evidence, FileError, ParameterFile, Value};
-pub use search::{Budget, Learned, Standing, search};
+pub use search::{Budget, Learned, Standing, least_runs, search};
 pub use space::Axis;

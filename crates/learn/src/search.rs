@@ -100,7 +100,7 @@ pub fn search(
 ) -> Learned {
     let weights = weights(points);
     let mut standings = vec![Standing::default(); points.len()];
-    let reserved = ((budget.runs as f64 * CONFIRMED) as u64).max(2);
+    let reserved = reserved(budget.runs);
     let mut left = budget.runs.saturating_sub(reserved);
     let (mut rounds, mut drawn) = (0, 0);
     loop {
@@ -134,6 +134,20 @@ pub fn search(
     let confirmed = |at: Option<&u64>| Confirmed { runs, successes: at.copied().unwrap_or(0) };
     let (confirmed, defaults) = (confirmed(counts.first()), confirmed(counts.last()));
     Learned { best, standings, rounds, confirmed, defaults }
+}
+
+/// How many of so many runs are kept to confirm the choice.
+fn reserved(runs: u64) -> u64 {
+    ((runs as f64 * CONFIRMED) as u64).max(2)
+}
+
+/// The fewest runs of which enough choose that each of so many candidates is tried once.
+#[must_use]
+pub fn least_runs(candidates: usize) -> u64 {
+    let candidates = candidates as u64;
+    // Half as many again are more than enough.
+    let enough = |runs: &u64| runs - reserved(*runs) >= candidates;
+    (candidates + 2..candidates.saturating_mul(2) + 2).find(enough).unwrap_or(candidates + 2)
 }
 
 /// A row of seeds.
@@ -289,6 +303,20 @@ mod tests {
         }
         let budget = Budget { runs: 10, seed: 0, jobs: 1 };
         assert_eq!(search(&[], budget, |_, _| true, || {}).standings, []);
+    }
+
+    /// With the fewest runs each candidate is tried, and with one run less none is.
+    #[test]
+    fn who_has_the_fewest_runs_tries_each_candidate() {
+        for count in [2, 3, 7, 24, 64, 1024] {
+            let runs = least_runs(count);
+            let tried = |runs| {
+                let budget = Budget { runs, seed: 0, jobs: 2 };
+                search(&line(count), budget, |_, seed| chance(seed, 0.5), || {}).standings
+            };
+            assert!(tried(runs).iter().all(|standing| standing.runs > 0), "{count}: {runs}");
+            assert!(tried(runs - 1).iter().all(|standing| standing.runs == 0), "{count}: {runs}");
+        }
     }
 
     #[test]

@@ -15,18 +15,56 @@ const DEPTHS_MAX: usize = 16;
 /// The most instructions that one try may take.
 const STEPS_MAX: u64 = 1_000_000;
 
+/// How often a way back that is blocked is tried again, as in a run.
+const BLOCKED_TRIES: u32 = 2;
+
 /// Knows the world that it is asked about, and all that chance has in store.
 #[derive(Clone, Copy, Debug, Default)]
-pub struct Clairvoyant;
+pub struct Clairvoyant {
+    /// How often a person will still give the fresh command after a stop.
+    pub releases: u32,
+}
 
 impl<C: Workcell + Clone> Foresight<C> for Clairvoyant {
     fn depth(&mut self, site: &Site<'_, '_, C>) -> Option<usize> {
         let depths = 1..=site.trail.actions().len().min(DEPTHS_MAX);
-        let seen = depths.filter_map(|depth| Some((look(site, depth)?, depth)));
-        let best = seen.min_by(|((one, one_s), _), ((other, other_s), _)| {
-            one.cmp(other).then(one_s.total_cmp(other_s))
+        let seen = depths.filter_map(|depth| Some((look(site, depth, self.releases)?, depth)));
+        let best = seen.min_by(|(one, _), (other, _)| {
+            let worse = |seen: &Seen| (seen.leads, seen.releases);
+            worse(one).cmp(&worse(other)).then(one.takes_s.total_cmp(&other.takes_s))
         });
         best.map(|(_, depth)| depth)
+    }
+}
+
+/// What was seen of going back so far.
+struct Seen {
+    leads: Leads,
+    /// How often a person has to release the arm on the way.
+    releases: u32,
+    /// How long it takes by the workcell's clock, in seconds.
+    takes_s: f64,
+}
+
+/// A copy of a workcell and of who releases a stopped arm in it.
+struct Copied<C> {
+    cell: C,
+    /// How often it will still be released.
+    releases: u32,
+}
+
+impl<C: Workcell> Copied<C> {
+    /// Whether the arm may move; after a stop, because it is released.
+    fn may_move(&mut self) -> bool {
+        if !self.cell.is_stopped() {
+            return true;
+        }
+        let is_released = self.releases > 0;
+        if is_released {
+            self.releases -= 1;
+            self.cell.release();
+        }
+        is_released
     }
 }
 
@@ -41,17 +79,19 @@ enum Leads {
     Again,
 }
 
-/// Where it leads to go back so many actions at each attempt, and how long that takes in seconds of
-/// the workcell's clock; none if the error would not be got past.
-fn look<C: Workcell + Clone>(site: &Site<'_, '_, C>, depth: usize) -> Option<(Leads, f64)> {
-    let (mut machine, mut cell) = (site.machine.clone(), site.cell.clone());
+/// Where it leads to go back so many actions at each attempt; none if the error would not be got
+/// past.
+fn look<C: Workcell + Clone>(site: &Site<'_, '_, C>, depth: usize, releases: u32) -> Option<Seen> {
+    let mut machine = site.machine.clone();
+    let mut copied = Copied { cell: site.cell.clone(), releases };
     let mut watch = Watch(site.trail.clone());
     for change in site.changes(depth) {
-        back(&mut machine, &mut cell, &mut watch.0, depth)?;
+        back(&mut machine, &mut copied, &mut watch.0, depth)?;
         machine.alter(change);
-        let leads = forward(&mut machine, &mut cell, &mut watch, site)?;
+        let leads = forward(&mut machine, &mut copied, &mut watch, site)?;
         if leads != Leads::Again {
-            return Some((leads, cell.now_s() - site.cell.now_s()));
+            let takes_s = copied.cell.now_s() - site.cell.now_s();
+            return Some(Seen { leads, releases: releases - copied.releases, takes_s });
         }
     }
     None
@@ -59,30 +99,38 @@ fn look<C: Workcell + Clone>(site: &Site<'_, '_, C>, depth: usize) -> Option<(Le
 
 fn back<C: Workcell>(
     machine: &mut Machine<'_>,
-    cell: &mut C,
+    copied: &mut Copied<C>,
     trail: &mut Trail<'_>,
     depth: usize,
 ) -> Option<()> {
     let actions = trail.actions();
     let to = actions[actions.len().checked_sub(depth)?].steps;
-    if let Some(motion) = trail.round_trip(to, &cell.joints()) {
-        machine.unwind_to(Mark::at(motion.steps), cell).ok()?;
+    if let Some(motion) = trail.round_trip(to, &copied.cell.joints()) {
+        machine.unwind_to(Mark::at(motion.steps), &mut copied.cell).ok()?;
     }
-    let stop = machine.reverse_to(Mark::at(to), cell, &mut ());
-    trail.cut(machine.state().steps());
-    matches!(stop, Stop::AtMark | Stop::OffMark | Stop::AtStart).then_some(())
+    for _ in 0..=BLOCKED_TRIES {
+        match machine.reverse_to(Mark::at(to), &mut copied.cell, &mut ()) {
+            Stop::AtMark | Stop::OffMark | Stop::AtStart => {
+                trail.cut(machine.state().steps());
+                return Some(());
+            }
+            Stop::Fault { .. } if copied.may_move() => {}
+            _ => return None,
+        }
+    }
+    None
 }
 
 /// Where going forward leads; none if to the end of the run.
 fn forward<C: Workcell>(
     machine: &mut Machine<'_>,
-    cell: &mut C,
+    copied: &mut Copied<C>,
     watch: &mut Watch<'_>,
     site: &Site<'_, '_, C>,
 ) -> Option<Leads> {
     let allowed = machine.executed().saturating_add(STEPS_MAX);
     while !site.incident.is_past(&watch.0) && machine.executed() < allowed {
-        match machine.step(Direction::Forward, cell, watch) {
+        match machine.step(Direction::Forward, &mut copied.cell, watch) {
             Ok(()) | Err(Stop::Raised { .. }) => {}
             Err(Stop::Finished) if machine.state().raised().is_empty() => break,
             Err(Stop::Due { error, pc }) => {
@@ -91,10 +139,11 @@ fn forward<C: Workcell>(
                 let is_again = site.incident.is_again(error, pc, entry);
                 return Some(if is_again { Leads::Again } else { Leads::Elsewhere });
             }
-            Err(Stop::Fault { fault, pc, .. }) if !cell.is_stopped() => {
+            Err(Stop::Fault { fault, pc, .. }) => {
                 let error = fault::error_of(machine.program().module(), &fault)?;
-                let mut driven = Direct { machine: &mut *machine, cell: &mut *cell };
-                if !fault::raise(&mut driven, error, pc, &mut watch.0) {
+                let is_free = copied.may_move();
+                let mut driven = Direct { machine: &mut *machine, cell: &mut copied.cell };
+                if !is_free || !fault::raise(&mut driven, error, pc, &mut watch.0) {
                     return None;
                 }
             }

@@ -5,7 +5,8 @@ use std::collections::BTreeSet;
 
 /// The place of an instruction in words that stay the same when lines are added: the function, what
 /// it says there, and which of those in it that say the same.
-pub(crate) fn place(module: &Module, pc: u32) -> String {
+#[must_use]
+pub fn place(module: &Module, pc: u32) -> String {
     let function = module.function_at(pc).map(|index| &module.functions[index]);
     let name = function.map_or("", |function| &function.name);
     let Some(entry) = module.source_at(pc) else { return name.to_owned() };

@@ -44,6 +44,9 @@ pub enum Strategy {
 }
 
 impl Strategy {
+    /// The most actions that a strategy can be told to go back by each time.
+    pub const FIXED_MAX: usize = 1000;
+
     /// The strategy of a name: `declared`, `stop`, `retry`, `back-up`, `restart`, `explicit`,
     /// `fixed:N`, `escalating`, `learned`, `oracle`. Those that a number belongs to have the number
     /// that is usual elsewhere: three tries in place, six after backing up 0.30 m (as Nav2).
@@ -61,7 +64,10 @@ impl Strategy {
             "oracle" => Self::Oracle,
             other => {
                 let actions = other.strip_prefix("fixed:")?.parse().ok()?;
-                (1..=1000).contains(&actions).then_some(Self::Fixed { actions })?
+                let fixed = Self::Fixed { actions };
+                // `fixed:02` would be the same strategy by another name.
+                let is_one = (1..=Self::FIXED_MAX).contains(&actions) && fixed.name() == other;
+                is_one.then_some(fixed)?
             }
         })
     }
@@ -131,7 +137,22 @@ mod tests {
         ] {
             assert_eq!(Strategy::from_name(name).map(Strategy::name).as_deref(), Some(name));
         }
-        for wrong in ["", "fixed", "fixed:", "fixed:0", "fixed:-1", "fixed:x", "Learned"] {
+        assert_eq!(
+            Strategy::from_name("fixed:1000").map(Strategy::name),
+            Some("fixed:1000".into())
+        );
+        for wrong in [
+            "",
+            "fixed",
+            "fixed:",
+            "fixed:0",
+            "fixed:-1",
+            "fixed:x",
+            "fixed:02",
+            "fixed:+2",
+            "fixed:1001",
+            "Learned",
+        ] {
             assert_eq!(Strategy::from_name(wrong), None, "{wrong}");
         }
     }

@@ -2,10 +2,14 @@
 //! in a workcell that its seed has made.
 
 use crate::case::{Case, Stand};
-use crate::outcome::{Ending, Incident, Outcome};
+use crate::outcome::{Ending, Incident, Outcome, Stop};
+use crate::stops::Stops;
 use crate::strategy::Strategy;
 use obverse_bytecode::{Module, Verified};
-use obverse_recovery::{Bounds, Clairvoyant, Foresight, Memory, Operator, Recovery, Site, recover};
+use obverse_isa::ErrorId;
+use obverse_recovery::{
+    Bounds, Clairvoyant, Foresight, Memory, Operator, Recovery, Site, place, recover,
+};
 use obverse_sim::{Cell, Missed, Sim};
 use obverse_vm::{Limits, LinkError, Machine};
 use obverse_workcell::{Clock, Fault};
@@ -70,18 +74,14 @@ pub struct MachineStand<'c> {
     memory: Memory,
 }
 
-/// A person who releases a stopped arm so often.
-struct Releases {
-    left: u32,
-    given: u32,
-}
+/// A person who releases a stopped arm as often as is left.
+struct Releases<'r>(&'r std::cell::Cell<u32>);
 
-impl Operator for Releases {
+impl Operator for Releases<'_> {
     fn release(&mut self, _: &Fault) -> bool {
-        let is_given = self.left > 0;
-        self.left -= u32::from(is_given);
-        self.given += u32::from(is_given);
-        is_given
+        let left = self.0.get();
+        self.0.set(left.saturating_sub(1));
+        left > 0
     }
 }
 
@@ -90,8 +90,10 @@ impl Stand for MachineStand<'_> {
         let terms = &self.case.terms;
         let mut cell = Sim::new(self.case.cell, seed);
         let mut machine = self.case.machine.clone();
-        let mut operator = Releases { left: terms.releases, given: 0 };
-        let (mut seer, answer) = (Seer::default(), strategy.answer());
+        let releases = std::cell::Cell::new(terms.releases);
+        let mut operator = Releases(&releases);
+        let mut seer = Seer { releases: &releases, causes: Vec::new() };
+        let answer = strategy.answer();
         let mut recovery = Recovery {
             strategy: answer,
             bounds: Bounds::default(),
@@ -105,57 +107,71 @@ impl Stand for MachineStand<'_> {
             incidents: Vec::new(),
         };
         let limits = Limits::instructions(terms.instructions);
-        let ended = recover(&mut machine, limits, &mut cell, &mut recovery, &mut ());
-        let incidents = recovery.incidents;
+        let mut stops = Stops::default();
+        let ended = recover(&mut machine, limits, &mut cell, &mut recovery, &mut stops);
+        let found = recovery.incidents;
         let module = machine.program().module();
+        // What reversal gives up the code behind it may still put right.
+        let put_right =
+            answer.goes_on_when_given_up() && ended == obverse_recovery::Ending::Finished;
+        let released = stops.released(&found);
+        let mut incidents: Vec<Incident> = found
+            .iter()
+            .zip(released)
+            .map(|(found, is_released)| Incident {
+                stop: is_released.then_some(Stop::Released),
+                ..incident(module, found, put_right, seer.cause_of(found))
+            })
+            .collect();
+        if let Some(held) = stops.held(&ended) {
+            hold(&mut incidents, module, held, &cell);
+        }
         let (ending, why) = match ending(module, &ended) {
             (Ending::Succeeded, _) => judged(&cell),
             other => other,
         };
-        let goes_on = answer.goes_on_when_given_up();
-        let calls = operator.given + u32::from(ending != Ending::Succeeded);
+        let given = terms.releases - releases.get();
+        let calls = given + u32::from(ending != Ending::Succeeded);
         Outcome {
             ending,
             why,
-            attempts: incidents.iter().map(|incident| incident.attempts.len() as u32).sum(),
+            attempts: incidents.iter().map(|incident| incident.depths.len() as u32).sum(),
             makespan_s: cell.now_s(),
-            releases: operator.given,
+            releases: given,
             person_s: terms.person_s * f64::from(calls),
             instructions: machine.executed(),
-            // What reversal gives up the code behind it may still put right.
-            incidents: incidents
-                .iter()
-                .map(|found| {
-                    let put_right = goes_on && ended == obverse_recovery::Ending::Finished;
-                    incident(module, found, put_right, seer.cause_of(found))
-                })
-                .collect(),
+            incidents,
         }
     }
 }
 
 /// Sees what is truly wrong when an error is due.
-#[derive(Default)]
-struct Seer {
+struct Seer<'r> {
+    /// How often a person will still release a stopped arm.
+    releases: &'r std::cell::Cell<u32>,
     /// The error, when it was due, and the cause.
     causes: Vec<(u16, f64, Option<String>)>,
 }
 
-impl Foresight<Sim> for Seer {
+impl Foresight<Sim> for Seer<'_> {
     fn depth(&mut self, site: &Site<'_, '_, Sim>) -> Option<usize> {
-        Clairvoyant.depth(site)
+        Clairvoyant { releases: self.releases.get() }.depth(site)
     }
 
     fn on_error(&mut self, incident: &obverse_recovery::Incident, cell: &Sim) {
-        let mut codes: Vec<&str> = cell.truth().iter().map(|cause| cause.kind.code()).collect();
-        codes.sort_unstable();
-        codes.dedup();
-        let cause = (!codes.is_empty()).then(|| codes.join("+"));
-        self.causes.push((incident.error.0, incident.began_s, cause));
+        self.causes.push((incident.error.0, incident.began_s, cause(cell)));
     }
 }
 
-impl Seer {
+/// What is truly wrong in a workcell.
+fn cause(cell: &Sim) -> Option<String> {
+    let mut codes: Vec<&str> = cell.truth().iter().map(|cause| cause.kind.code()).collect();
+    codes.sort_unstable();
+    codes.dedup();
+    (!codes.is_empty()).then(|| codes.join("+"))
+}
+
+impl Seer<'_> {
     fn cause_of(&self, found: &obverse_recovery::Incident) -> Option<String> {
         let is_it = |(error, began_s, _): &&(u16, f64, Option<String>)| {
             *error == found.error.0 && *began_s == found.began_s
@@ -208,7 +224,30 @@ fn incident(
         depths: found.attempts.iter().map(|attempt| attempt.actions as u32).collect(),
         recovered: is_recovered || put_right,
         otherwise: !is_recovered && put_right,
+        stop: None,
         lesson: found.lesson(),
         cause,
     }
+}
+
+/// An error at an act whose fault a stop held, so that it was never due: an incident of its own,
+/// unless it was the same again.
+fn hold(incidents: &mut Vec<Incident>, module: &Module, (error, pc): (ErrorId, u32), cell: &Sim) {
+    let (error, place) = (module.errors[error.index()].name.clone(), place(module, pc));
+    let is_again =
+        |open: &&mut Incident| !open.recovered && open.error == error && open.place == place;
+    if let Some(again) = incidents.iter_mut().find(is_again) {
+        again.stop = Some(Stop::Held);
+        return;
+    }
+    incidents.push(Incident {
+        error,
+        place,
+        depths: Vec::new(),
+        recovered: false,
+        otherwise: false,
+        stop: Some(Stop::Held),
+        lesson: None,
+        cause: cause(cell),
+    });
 }

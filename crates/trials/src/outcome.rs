@@ -22,6 +22,17 @@ pub enum Ending {
     Limit,
 }
 
+/// What a stop of the workcell, without which there would have been no error or no blocked way
+/// back, asked of a person: the fresh command before which nothing moves.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Stop {
+    /// It was given.
+    Released,
+    /// It was not: the error could not be dealt with, and the arm holds.
+    Held,
+}
+
 /// An error that came up, and what was done about it.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -34,6 +45,9 @@ pub struct Incident {
     pub depths: Vec<u32>,
     /// Whether the program went on past that place afterwards.
     pub recovered: bool,
+    /// What a stop of the workcell asked of a person for it, if one came with it.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub stop: Option<Stop>,
     /// Whether that was by what the program does where going back has been given up: no depth of
     /// going back was enough then.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
@@ -84,11 +98,30 @@ impl Outcome {
         self.ending != Ending::Succeeded || self.releases > 0
     }
 
-    /// Whether an error of it was put right: the run went on past it, and did not end in what only
-    /// seems to be right.
+    /// What brought a person, in words; none where nobody had to come. It is one thing: what the
+    /// assembly ended in, or else that the arm was released.
+    #[must_use]
+    pub fn brought_a_person(&self) -> Option<String> {
+        let why = self.why.as_deref().unwrap_or("for no reason that is known");
+        let is_held = self.incidents.iter().any(|incident| incident.stop == Some(Stop::Held));
+        Some(match self.ending {
+            Ending::Succeeded if self.releases == 0 => return None,
+            Ending::Succeeded => "released after a stop, and ended well".to_owned(),
+            Ending::FalseSuccess => "not as it should be".to_owned(),
+            Ending::GivenUp => format!("given up: {why}"),
+            Ending::Fault if is_held => format!("held by a stop: {why}"),
+            Ending::Fault => format!("ended in a fault: {why}"),
+            Ending::Trap => format!("ended in a trap: {why}"),
+            Ending::Limit => "the limit of instructions".to_owned(),
+        })
+    }
+
+    /// Whether an error of it was put right: the run went on past it, no person had to release the
+    /// arm for it, and the assembly did not end in what only seems to be right, since then any of
+    /// its errors may be why. What became of its other errors changes nothing.
     #[must_use]
     pub fn puts_right(&self, incident: &Incident) -> bool {
-        incident.recovered && self.ending != Ending::FalseSuccess
+        incident.recovered && incident.stop.is_none() && self.ending != Ending::FalseSuccess
     }
 }
 

@@ -12,7 +12,7 @@ use std::fmt;
 use xxhash_rust::xxh3::Xxh3;
 
 /// The version of the format, which the first line names.
-pub const FORMAT: u32 = 3;
+pub const FORMAT: u32 = 4;
 
 /// A line of a file.
 #[derive(Serialize, Deserialize)]

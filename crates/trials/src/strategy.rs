@@ -85,18 +85,7 @@ impl Strategy {
 
 impl fmt::Display for Strategy {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(match self {
-            Self::Declared => "declared",
-            Self::Stop => "stop",
-            Self::Retry => "retry",
-            Self::BackUp => "back-up",
-            Self::Restart => "restart",
-            Self::Explicit => "explicit",
-            Self::Fixed(depth) => return write!(f, "fixed:{depth}"),
-            Self::Escalating => "escalating",
-            Self::Learned => "learned",
-            Self::Oracle => "oracle",
-        })
+        f.write_str(&self.answer().name())
     }
 }
 
@@ -104,20 +93,23 @@ impl FromStr for Strategy {
     type Err = StrategyError;
 
     fn from_str(name: &str) -> Result<Self, StrategyError> {
-        if name == "declared" {
-            return Ok(Self::Declared);
-        }
-        if let Some(depth) = name.strip_prefix("fixed:") {
-            let depth: u32 = depth.parse().map_err(|_| StrategyError::Depth(name.to_owned()))?;
-            // `fixed:02` would be the same strategy by another name.
-            let is_plain = depth > 0 && format!("fixed:{depth}") == name;
-            return is_plain
-                .then_some(Self::Fixed(depth))
-                .ok_or_else(|| StrategyError::Depth(name.to_owned()));
-        }
-        let is_named = |strategy: &&Self| strategy.to_string() == name;
-        let found = Self::ALL.iter().find(is_named);
-        found.copied().ok_or_else(|| StrategyError::Unknown(name.to_owned()))
+        use obverse_recovery::Strategy as Answer;
+        Ok(match Answer::from_name(name) {
+            Some(Answer::Declared) => Self::Declared,
+            Some(Answer::Stop) => Self::Stop,
+            Some(Answer::Retry { .. }) => Self::Retry,
+            Some(Answer::BackUp { .. }) => Self::BackUp,
+            Some(Answer::Restart { .. }) => Self::Restart,
+            Some(Answer::Explicit) => Self::Explicit,
+            Some(Answer::Fixed { actions }) => Self::Fixed(actions as u32),
+            Some(Answer::Escalating) => Self::Escalating,
+            Some(Answer::Learned) => Self::Learned,
+            Some(Answer::Oracle) => Self::Oracle,
+            None if name.starts_with("fixed:") => {
+                return Err(StrategyError::Depth(name.to_owned()));
+            }
+            None => return Err(StrategyError::Unknown(name.to_owned())),
+        })
     }
 }
 
@@ -155,7 +147,9 @@ impl fmt::Display for StrategyError {
             ),
             Self::Depth(name) => write!(
                 f,
-                "`{name}` must name a number of actions from 1, as in fixed:2 for going back by two"
+                "`{name}` must name a number of actions from 1 to {}, as in fixed:2 for going back \
+                 by two",
+                obverse_recovery::Strategy::FIXED_MAX
             ),
             Self::Twice(strategy) => write!(f, "the strategy {strategy} is named twice"),
         }
@@ -189,7 +183,8 @@ mod tests {
         for wrong in ["", "Stop", "fixed", "stop,,retry"] {
             assert!(matches!(Strategy::list(wrong), Err(StrategyError::Unknown(_))), "{wrong}");
         }
-        for wrong in ["fixed:", "fixed:0", "fixed:-1", "fixed:02", "fixed:5000000000"] {
+        for wrong in ["fixed:", "fixed:0", "fixed:-1", "fixed:02", "fixed:1001", "fixed:5000000000"]
+        {
             assert!(matches!(Strategy::list(wrong), Err(StrategyError::Depth(_))), "{wrong}");
         }
     }

@@ -42,15 +42,21 @@ impl Table {
 /// of a strategy.
 const CAUSES_SHOWN: usize = 3;
 const ERRORS_SHOWN: usize = 12;
+/// How many reasons why a person had to come have a row, the most frequent.
+const REASONS_SHOWN: usize = 8;
 /// So many errors of an assembly, and more, are counted together.
 const MANY_ERRORS: u64 = 4;
 
-/// The table by strategy; where errors came up, that by strategy and error and that by how many
-/// errors an assembly had; and what is not as it should be where that is so.
+/// The table by strategy; of several, how their makespans differ; where errors came up, that by
+/// strategy and error and that by how many errors an assembly had; and what brought a person, and
+/// what is not as it should be, where that is so.
 #[must_use]
 pub fn draw(summary: &Summary) -> String {
     let mut text = by_strategy(summary).draw();
-    for table in [by_error(summary), by_assembly(summary), misses(summary)] {
+    let by_error = by_error(summary);
+    for table in
+        [differences(summary), by_error, by_assembly(summary), reasons(summary), misses(summary)]
+    {
         if table.rows.len() > 1 {
             text.push('\n');
             text.push_str(&table.draw());
@@ -112,6 +118,40 @@ fn by_strategy(summary: &Summary) -> Table {
             number(tally.all.mean_depth(), 1),
         ]);
         table.rows.push(row);
+    }
+    table
+}
+
+/// How much longer the assemblies took than the same ones by one strategy.
+fn differences(summary: &Summary) -> Table {
+    let Some(base) = summary.compared_with else { return Table::new(1, &["strategy"]) };
+    let head = format!("mean s more than {base}");
+    let mut table = Table::new(1, &["strategy", &head, "95 % interval"]);
+    for tally in summary.strategies.iter().filter(|tally| tally.strategy != base) {
+        let mean_s = tally.longer_mean_s().map_or_else(none, |mean_s| format!("{mean_s:+.2}"));
+        let range = |interval: Interval| format!("{:+.2} to {:+.2}", interval.low, interval.high);
+        let interval = tally.longer_interval_s().map_or_else(none, range);
+        table.rows.push(vec![tally.strategy.to_string(), mean_s, interval]);
+    }
+    table
+}
+
+/// What brought a person, the most frequent first; the counts add up to all that did.
+fn reasons(summary: &Summary) -> Table {
+    let mut table = Table::new(2, &["strategy", "what brought a person", "assemblies"]);
+    for tally in &summary.strategies {
+        let mut reasons: Vec<(String, u64)> =
+            tally.brought_by.iter().map(|(by, count)| (by.clone(), *count)).collect();
+        reasons.sort_by_key(|(_, count)| std::cmp::Reverse(*count));
+        if reasons.len() > REASONS_SHOWN {
+            let rest = reasons.split_off(REASONS_SHOWN - 1);
+            let count = rest.iter().map(|(_, count)| count).sum();
+            reasons.push((format!("{} others", rest.len()), count));
+        }
+        for (index, (by, count)) in reasons.into_iter().enumerate() {
+            let strategy = if index == 0 { tally.strategy.to_string() } else { String::new() };
+            table.rows.push(vec![strategy, by, grouped(count)]);
+        }
     }
     table
 }
@@ -263,13 +303,16 @@ mod tests {
             false_successes: 0,
             misses: BTreeMap::new(),
             to_a_person: 0,
+            brought_by: BTreeMap::new(),
             attempts: 0,
             by_errors,
             all: Errors::default(),
             kinds,
             makespans_s: Vec::new(),
+            longer_s: Vec::new(),
         };
-        Summary { strategies: vec![tally], is_judged: false, has_sequences: false }
+        let strategies = vec![tally];
+        Summary { strategies, is_judged: false, has_sequences: false, compared_with: None }
     }
 
     #[test]

@@ -16,6 +16,9 @@ pub struct Summary {
     pub is_judged: bool,
     /// Whether an error of the program has a sequence written against it.
     pub has_sequences: bool,
+    /// What the makespans of all strategies are compared with, assembly by assembly: the strategy
+    /// that learns, or else the first; none of fewer than two.
+    pub compared_with: Option<Strategy>,
 }
 
 /// What came of all assemblies by a strategy.
@@ -33,6 +36,8 @@ pub struct Tally {
     pub misses: BTreeMap<String, u64>,
     /// For how many a person had to come; those that ended falsely are among them.
     pub to_a_person: u64,
+    /// For how many of those what brought a person; each is there once.
+    pub brought_by: BTreeMap<String, u64>,
     /// How often something was tried again.
     pub attempts: u64,
     /// How many assemblies had so many errors each.
@@ -43,6 +48,9 @@ pub struct Tally {
     pub kinds: Vec<Kind>,
     /// How long each assembly took with the time of a person, in seconds, ascending.
     pub makespans_s: Vec<f64>,
+    /// How much longer each assembly took than the same one by the strategy compared with, in
+    /// seconds, in the order of the runs; nothing for that strategy itself.
+    pub longer_s: Vec<f64>,
 }
 
 /// Errors of a kind: of a name, and of a true cause where the workcell tells it.
@@ -63,7 +71,7 @@ pub struct Errors {
     pub count: u64,
     /// In how many assemblies; one may have several.
     pub assemblies: u64,
-    /// After how many the program went on, and came to an assembly that is as it should be.
+    /// After how many the program went on without a person, in an assembly that did not end falsely.
     pub recovered: u64,
     /// How many of those were recovered by going back how many actions, at the last attempt.
     pub depths: BTreeMap<u32, u64>,
@@ -122,11 +130,32 @@ impl Errors {
 /// What came of the records of a campaign, or of a part of it.
 #[must_use]
 pub fn summary(plan: &Plan, records: &[Record]) -> Summary {
+    let of = |strategy| records.iter().filter(move |record| record.strategy == strategy);
+    let compared_with = compared_with(&plan.strategies);
+    let base_s: BTreeMap<u64, f64> = compared_with
+        .into_iter()
+        .flat_map(of)
+        .map(|record| (record.run, record.outcome.total_s()))
+        .collect();
     let tally = |strategy: &Strategy| {
-        tally(*strategy, records.iter().filter(|record| record.strategy == *strategy))
+        let mut tally = tally(*strategy, of(*strategy));
+        if Some(*strategy) != compared_with {
+            let longer_s =
+                |record: &Record| Some(record.outcome.total_s() - base_s.get(&record.run)?);
+            tally.longer_s = of(*strategy).filter_map(longer_s).collect();
+        }
+        tally
     };
     let strategies = plan.strategies.iter().map(tally).collect();
-    Summary { strategies, is_judged: plan.goals > 0, has_sequences: plan.sequences > 0 }
+    let (is_judged, has_sequences) = (plan.goals > 0, plan.sequences > 0);
+    Summary { strategies, is_judged, has_sequences, compared_with }
+}
+
+/// Which of several strategies the others are compared with.
+fn compared_with(strategies: &[Strategy]) -> Option<Strategy> {
+    let first = strategies.first().filter(|_| strategies.len() > 1)?;
+    let learned = strategies.iter().find(|strategy| **strategy == Strategy::Learned);
+    learned.or(Some(first)).copied()
 }
 
 fn tally<'r>(strategy: Strategy, records: impl Iterator<Item = &'r Record>) -> Tally {
@@ -137,11 +166,13 @@ fn tally<'r>(strategy: Strategy, records: impl Iterator<Item = &'r Record>) -> T
         false_successes: 0,
         misses: BTreeMap::new(),
         to_a_person: 0,
+        brought_by: BTreeMap::new(),
         attempts: 0,
         by_errors: BTreeMap::new(),
         all: Errors::default(),
         kinds: Vec::new(),
         makespans_s: Vec::new(),
+        longer_s: Vec::new(),
     };
     let mut kinds: BTreeMap<(&str, Option<&str>), Errors> = BTreeMap::new();
     for Record { outcome, .. } in records {
@@ -154,7 +185,10 @@ fn tally<'r>(strategy: Strategy, records: impl Iterator<Item = &'r Record>) -> T
                 *tally.misses.entry(miss.to_owned()).or_default() += 1;
             }
         }
-        tally.to_a_person += u64::from(outcome.takes_a_person());
+        if let Some(by) = outcome.brought_a_person() {
+            tally.to_a_person += 1;
+            *tally.brought_by.entry(by).or_default() += 1;
+        }
         tally.attempts += u64::from(outcome.attempts);
         tally.makespans_s.push(outcome.total_s());
         let mut seen: BTreeSet<(&str, Option<&str>)> = BTreeSet::new();
@@ -203,8 +237,23 @@ impl Tally {
         quantile(&self.makespans_s, share)
     }
 
+    /// How much longer an assembly takes on average than the same one by the strategy compared
+    /// with, in seconds; none where there is nothing to compare.
+    #[must_use]
+    pub fn longer_mean_s(&self) -> Option<f64> {
+        mean(&self.longer_s)
+    }
+
+    /// Where that difference lies with 95 % confidence, in seconds: the interval of the mean of the
+    /// differences, from which what both have in common has gone.
+    #[must_use]
+    pub fn longer_interval_s(&self) -> Option<Interval> {
+        mean_interval(&self.longer_s)
+    }
+
     fn to_json(&self) -> Value {
         let interval = self.makespan_interval_s();
+        let longer = self.longer_interval_s();
         let mut object = Map::new();
         let fields = [
             ("strategy", json!(self.strategy)),
@@ -213,11 +262,15 @@ impl Tally {
             ("false_successes", json!(self.false_successes)),
             ("misses", json!(self.misses)),
             ("to_a_person", json!(self.to_a_person)),
+            ("brought_a_person", json!(self.brought_by)),
             ("attempts", json!(self.attempts)),
             ("makespan_mean_s", json!(self.makespan_mean_s())),
             ("makespan_mean_low_s", json!(interval.map(|interval| interval.low))),
             ("makespan_mean_high_s", json!(interval.map(|interval| interval.high))),
             ("makespan_p95_s", json!(self.makespan_quantile_s(0.95))),
+            ("longer_mean_s", json!(self.longer_mean_s())),
+            ("longer_mean_low_s", json!(longer.map(|interval| interval.low))),
+            ("longer_mean_high_s", json!(longer.map(|interval| interval.high))),
         ];
         object.extend(fields.map(|(name, value)| (name.to_owned(), value)));
         let by_errors = self.by_errors.iter().map(|(errors, n)| (errors.to_string(), json!(n)));

@@ -96,7 +96,7 @@ impl Builder<'_> {
         let items = file.item.iter().map(|item| self.item(item, &tcp, &fixtures));
         let items = items.collect::<Result<Vec<_>, _>>()?;
         let mut inputs = self.inputs(&file.inputs, output_count)?;
-        Ok(Cell {
+        let cell = Cell {
             arm: self.arm(&file.arm)?,
             speeds: speeds(file),
             feeders: self.feeders(file, &items, output_count, &mut inputs)?,
@@ -111,7 +111,9 @@ impl Builder<'_> {
             gripper,
             tools,
             output_count,
-        })
+        };
+        self.free(file, &cell)?;
+        Ok(cell)
     }
 
     pub(super) fn at_most(&self, what: &str, count: usize, limit: usize) -> Result<(), CellError> {

@@ -20,6 +20,7 @@ mod tests;
 mod uncertainty;
 mod uncertainty_build;
 mod uncertainty_file;
+mod within;
 
 pub use code::CellCode;
 pub use error::CellError;

@@ -292,7 +292,7 @@ fn fixtures_touch_and_do_not_overlap() {
 fn holes_do_not_run_into_each_other() {
     let holes = |second: &str| {
         format!(
-            "[[fixture]]\nname = \"f\"\nplace = {{}}\nbody = [{{ cuboid_mm = [50, 50, 40], at = \
+            "[[fixture]]\nname = \"f\"\nplace = {{ xyz_mm = [400, 0, 0] }}\nbody = [{{ cuboid_mm = [50, 50, 40], at = \
              {{ xyz_mm = [0, 0, 20] }} }}]\nhole = [\n{{ diameter_mm = 10, depth_mm = 30 }},\n\
              {{ mouth = {{ {second} }}, diameter_mm = 8, depth_mm = 22 }},\n]"
         )
@@ -310,12 +310,126 @@ fn holes_do_not_run_into_each_other() {
     }
 }
 
+/// A block with a hole on a table, a tool, and items by their texts.
+fn block_and(items: &str) -> String {
+    format!(
+        "[[tool]]\nname = \"hand\"\ntcp = {{ xyz_mm = [0, 0, 100] }}\n\
+         body = [{{ cuboid_mm = [60, 60, 80], at = {{ xyz_mm = [0, 0, 40] }} }}]\n\
+         [gripper]\ntool = \"hand\"\noutput = 0\nnear_mm = 5\nnear_deg = 10\n\
+         [[fixture]]\nname = \"table\"\nplace = {{ xyz_mm = [400, 0, -20] }}\n\
+         body = [{{ cuboid_mm = [800, 800, 40] }}]\n\
+         [[fixture]]\nname = \"block\"\n\
+         place = {{ xyz_mm = [400, 0, 50], rotation_vector_deg = [180, 0, 0] }}\n\
+         body = [{{ cuboid_mm = [80, 80, 50], at = {{ xyz_mm = [0, 0, 25] }} }}]\n\
+         hole = [{{ diameter_mm = 10.1, depth_mm = 40 }}]\n{items}"
+    )
+}
+
+fn item(name: &str, place: &str, body: &str) -> String {
+    format!("[[item]]\nname = \"{name}\"\nplace = {{ {place} }}\n{body}\n")
+}
+
+#[test]
+fn an_item_lies_on_things_and_in_holes_and_not_in_a_fixture() {
+    let peg = "peg = { diameter_mm = 10, length_mm = 60, chamfer_mm = 0 }";
+    let fat = "peg = { diameter_mm = 14, length_mm = 60, chamfer_mm = 0 }";
+    let pin = "body = [{ cylinder = { diameter_mm = 10, length_mm = 60 } }]";
+    let bar = "body = [{ cuboid_mm = [6, 7, 60] }]";
+    let down = "rotation_vector_deg = [180, 0, 0]";
+    let at = |place: &str, body: &str| {
+        Cell::parse(&format!("{LEAST}{}", block_and(&item("pin", place, body))))
+    };
+    for (xyz, body) in [
+        ("[200, 0, 30]", peg),
+        ("[200, 0, 29.6]", peg),
+        // In the hole, to its bottom, and a body that is no peg.
+        ("[400, 0, 60]", peg),
+        ("[400, 0, 40]", peg),
+        ("[400, 0, 40]", pin),
+        ("[400, 0, 45]", bar),
+        ("[400, 0, 80]", fat),
+    ] {
+        let parsed = at(&format!("xyz_mm = {xyz}, {down}"), body);
+        assert!(parsed.is_ok(), "{xyz}, {body}: {parsed:?}");
+    }
+    for (xyz, body, of) in [
+        ("[200, 0, 20]", peg, "table"),
+        ("[200, 0, -20]", peg, "table"),
+        ("[420, 0, 60]", peg, "block"),
+        ("[400, 0, 35]", peg, "block"),
+        ("[400, 0, 70]", fat, "block"),
+        ("[200, 0, 20]", pin, "table"),
+    ] {
+        let error = at(&format!("xyz_mm = {xyz}, {down}"), body).expect_err(xyz);
+        assert_eq!((error.line, error.column, error.code), (22, 8, CellCode::Overlap), "{error}");
+        let said = format!("the item `pin` is in the fixture `{of}`");
+        assert!(error.message.starts_with(&said), "{xyz}: {error}");
+    }
+}
+
+#[test]
+fn two_items_are_not_in_one_place_unless_a_feeder_brings_one() {
+    let body = "body = [{ cuboid_mm = [20, 20, 20] }]";
+    let two = |second: &str, more: &str| {
+        let items = item("a", "xyz_mm = [200, 100, 10]", body) + &item("b", second, body);
+        Cell::parse(&format!("{LEAST}{}{more}", block_and(&items)))
+    };
+    assert!(two("xyz_mm = [220, 100, 10]", "").is_ok(), "they touch");
+    assert!(two("xyz_mm = [200, 100, 30]", "").is_ok(), "one lies on the other");
+    for within in ["[200, 100, 10]", "[210, 100, 10]", "[205, 105, 25]"] {
+        let error = two(&format!("xyz_mm = {within}"), "").expect_err(within);
+        assert_eq!((error.line, error.code), (26, CellCode::Overlap), "{error}");
+        assert!(error.message.starts_with("the item `b` is in the item `a`"), "{error}");
+    }
+    let feeder = "[[feeder]]\nname = \"chute\"\nitem = \"b\"\noutput = 1\n";
+    let same = "xyz_mm = [200, 100, 10]";
+    assert!(two(same, feeder).is_ok(), "it is not there yet");
+    assert!(two(same, &format!("{feeder}ready = true\n")).is_err(), "it is there");
+}
+
+#[test]
+fn the_arm_is_free_at_home() {
+    let wall = |name: &str, xyz: &str| {
+        format!(
+            "[[fixture]]\nname = \"{name}\"\nplace = {{ xyz_mm = {xyz} }}\n\
+             body = [{{ cuboid_mm = [100, 600, 100] }}]\n"
+        )
+    };
+    // At home the arm reaches to about (-0.42, -0.19, 0.42), from a shoulder at 0.09 over the base.
+    for (xyz, of) in [
+        ("[-250, 0, 520]", "the forearm of the arm"),
+        ("[0, 0, 300]", "the upper arm of the arm"),
+        ("[0, 0, 60]", "the shoulder of the arm"),
+    ] {
+        let error = error(&wall("wall", xyz));
+        assert_eq!((error.line, error.column, error.code), (2, 12, CellCode::Overlap), "{error}");
+        let said = format!("at home {of} is in the fixture `wall`");
+        assert!(error.message.starts_with(&said), "{error}");
+    }
+    assert!(Cell::parse(&format!("{LEAST}{}", wall("wall", "[0, 0, -50]"))).is_ok());
+    // The tool in an item; and not in the one that it could grip.
+    let home = crate::kinematics::forward(&Cell::parse(LEAST).unwrap().arm.home);
+    let ahead = |mm: f64| home.translation_m + home.rotation.column(2) * (mm * 1e-3);
+    let at = |mm: f64| {
+        let [x, y, z]: [f64; 3] = (ahead(mm) * 1e3).into();
+        let turn = home.rotation_vector_rad().map(f64::to_degrees);
+        format!("xyz_mm = [{x}, {y}, {z}], rotation_vector_deg = {turn:?}")
+    };
+    let body = "body = [{ cuboid_mm = [20, 20, 60] }]";
+    let with = |mm: f64| format!("{LEAST}{}", block_and(&item("part", &at(mm), body)));
+    let error = Cell::parse(&with(60.0)).expect_err("the tool is in it");
+    let said = "at home the tool `hand` is in the item `part`";
+    assert!(error.message.starts_with(said), "{error}");
+    assert!(Cell::parse(&with(100.0)).is_ok(), "it is in the gripper");
+    assert!(Cell::parse(&with(200.0)).is_ok(), "it is out of the way");
+}
+
 /// A thousand fixtures of many parts, all in one stripe.
 #[test]
 fn looking_for_what_overlaps_ends() {
     let parts = "{cuboid_mm=[9,9,1]},".repeat(40);
     let fixture = |number: usize| {
-        let place = format!("{{xyz_mm=[0,0,{}]}}", number * 2);
+        let place = format!("{{xyz_mm=[900,0,{}]}}", number * 2);
         format!("[[fixture]]\nname=\"{number}\"\nplace={place}\nbody=[{parts}]\n")
     };
     let text: String = (0..1000).map(fixture).collect();

@@ -1,7 +1,10 @@
 //! What a campaign computes.
 
 use crate::toy::{PERSON_S, Toy, plan, records};
-use obverse_trials::{Ending, Part, Plan, Record, Shard, Strategy, merge, plots, summary, table};
+use obverse_trials::statistics::Interval;
+use obverse_trials::{
+    Ending, Part, Plan, Record, Shard, Stop, Strategy, merge, plots, summary, table,
+};
 
 #[test]
 fn a_campaign_does_not_depend_on_threads_or_shards() {
@@ -107,6 +110,74 @@ fn what_ends_falsely_counts_for_nothing_and_is_said() {
     let cell = |row: &str, column| row.split_whitespace().nth(column).map(str::to_owned);
     let falsely = table.lines().nth(1).and_then(|row| cell(row, 11));
     assert_eq!(falsely.as_deref(), Some("-"), "nothing was judged: {table}");
+}
+
+/// An error that was put right stays so when another one brings a person later; not if a person had
+/// to release the arm for it.
+#[test]
+fn an_error_is_put_right_by_itself_or_not() {
+    let plan = plan("oracle,stop", 300);
+    let mut records = records(&plan, Shard::WHOLE, 2);
+    let before = summary(&plan, &records).strategies[0].all.recovered;
+    assert!(before > 50, "{before}");
+    let is_put_right = |record: &&mut Record| {
+        record.strategy == Strategy::Oracle && !record.outcome.incidents.is_empty()
+    };
+    for record in records.iter_mut().filter(is_put_right) {
+        let mut other = record.outcome.incidents[0].clone();
+        (other.error, other.recovered) = ("lost".to_owned(), false);
+        record.outcome.incidents.push(other);
+        record.outcome.ending = Ending::GivenUp;
+        record.outcome.why = Some("lost: attempts".to_owned());
+    }
+    let after = summary(&plan, &records);
+    let oracle = &after.strategies[0];
+    assert_eq!((oracle.all.recovered, oracle.all.count), (before, 2 * before));
+    assert_eq!(
+        (oracle.to_a_person, oracle.brought_by["given up: lost: attempts"]),
+        (before, before)
+    );
+    let row = format!("oracle    given up: lost: attempts  {before:>10}");
+    assert!(table::draw(&after).contains(&row), "{}", table::draw(&after));
+    for record in records.iter_mut().filter(is_put_right) {
+        record.outcome.incidents[0].stop = Some(Stop::Released);
+    }
+    assert_eq!(summary(&plan, &records).strategies[0].all.recovered, 0, "a person released it");
+}
+
+/// All strategies make the same assemblies: their difference is of pairs, from which what the
+/// assemblies differ in by themselves has gone.
+#[test]
+fn makespans_are_compared_assembly_by_assembly() {
+    let plan = plan("stop,retry,learned", 500);
+    let records = records(&plan, Shard::WHOLE, 2);
+    let summary = summary(&plan, &records);
+    let [stop, retry, learned] = &summary.strategies[..] else { panic!("{summary:?}") };
+    assert_eq!(summary.compared_with, Some(Strategy::Learned));
+    assert_eq!((learned.longer_mean_s(), learned.longer_interval_s()), (None, None));
+    for tally in [stop, retry] {
+        let difference = tally.longer_mean_s().expect("runs");
+        let of_means = tally.makespan_mean_s().zip(learned.makespan_mean_s()).map(|(a, b)| a - b);
+        assert!((difference - of_means.expect("runs")).abs() < 1e-9, "{difference}");
+        let interval = tally.longer_interval_s().expect("runs");
+        assert!(interval.low < difference && difference < interval.high, "{interval:?}");
+    }
+    let table = table::draw(&summary);
+    assert!(table.contains("mean s more than learned"), "{table}");
+    // Three tries in vain cost 9 s where something jams, and nothing else differs.
+    let plan = self::plan("stop,retry", 500);
+    let alone = obverse_trials::summary(&plan, &records);
+    assert_eq!(alone.compared_with, Some(Strategy::Stop));
+    let (jammed, retry) = (alone.strategies[0].in_error as f64, &alone.strategies[1]);
+    let difference = retry.longer_mean_s().expect("runs");
+    assert!((difference - 9.0 * jammed / 500.0).abs() < 1e-9, "{difference}");
+    let width = |interval: Interval| interval.high - interval.low;
+    let paired = width(retry.longer_interval_s().expect("runs"));
+    let by_itself = width(retry.makespan_interval_s().expect("runs"));
+    assert!(20.0 * paired < by_itself, "{paired} and {by_itself}");
+    let one = obverse_trials::summary(&self::plan("stop", 500), &records);
+    assert_eq!(one.compared_with, None);
+    assert!(!table::draw(&one).contains("more than"));
 }
 
 #[test]

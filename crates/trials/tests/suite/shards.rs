@@ -50,7 +50,7 @@ fn what_its_maker_could_not_have_written_is_refused() {
     let swapped = [lines[0], lines[2], lines[1]].join("\n") + "\n";
     let wrong = [
         (swapped, "line 2: run 0 by stop"),
-        (body.replacen("\"format\":3", "\"format\":1", 1), "format 1"),
+        (body.replacen("\"format\":4", "\"format\":1", 1), "format 1"),
         (body.replacen("\"runs\":9", "\"runs\":10", 1), "not whole"),
         (body.replacen("\"runs\":9", "\"runs\":99999999999", 1), "too many runs"),
         (body.replacen("\"index\":1", "\"index\":2", 1), "no such shard"),

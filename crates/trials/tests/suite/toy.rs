@@ -53,6 +53,7 @@ impl Stand for ToyStand<'_> {
             depths: tried.clone(),
             recovered,
             otherwise: false,
+            stop: None,
             lesson: None,
             cause: Some(format!("cause {needed}")),
         };
