@@ -3,6 +3,7 @@
 
 mod commands;
 mod debug;
+mod debug_errors;
 mod fmt;
 mod imports;
 mod invert;
