@@ -41,7 +41,7 @@ fn continue_goes_on_from_an_error_as_the_program_says() {
     );
     is_due(&client.go("continue", json!({})), "back 2 actions");
     assert_eq!(client.go("continue", json!({}))["reason"], "end");
-    assert_eq!(told(&client, "forward again, attempt"), 2);
+    assert_eq!(told(&client, " s: forward again, attempt"), 2);
     assert_eq!(told(&client, "past peg_meets_rim after 2 attempts"), 1);
     assert!(client.typed("history").contains("<-"));
     assert_eq!(client.bye("recovery_continue"), Some(0));
@@ -88,7 +88,7 @@ fn errors_that_a_client_does_not_want_to_hear_of_are_recovered_from_all_the_same
 fn a_held_arm_waits_for_a_release() {
     let folder = std::path::Path::new(env!("CARGO_TARGET_TMPDIR"));
     let path = folder.join("dap_bumps.obv");
-    let text = "error bumped { on collision  recover by reversing 1 action  give up after 1 times }\n\
+    let text = "error bumped {\n  on collision\n  recover by reversing 1 action\n}\n\
                 sequence main {\n  set 2 high\n  move 600 mm down in base\n}\n";
     std::fs::write(&path, text).expect("a file");
     let mut client = Client::new();
