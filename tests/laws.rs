@@ -114,7 +114,7 @@ laws! {
     wait_laws: waits_are_waited >= 10;
     recovery_laws: goes_back_along_the_trail >= 60 recovers_within_bounds >= 5
         keeps_the_trail_over_a_blocked_return >= 10 comes_back_to_what_was_left >= 10;
-    session_laws: is_a_run >= 8;
+    session_laws: is_a_run >= 8 takes_a_hand >= 3;
     tape_laws: shows_the_run_again >= 20;
     preflight_laws: foretells >= 60 foretells_of_modules >= 10;
     invert_laws: inverts_anything_twice >= 20;

@@ -39,7 +39,7 @@ fn piped(bench: &Bench, more: &[&str], commands: &[&str]) -> Ran {
     piped_to(bench, &[&["debug", "p.obv"], more].concat(), commands)
 }
 
-fn piped_to(bench: &Bench, arguments: &[&str], commands: &[&str]) -> Ran {
+pub(crate) fn piped_to(bench: &Bench, arguments: &[&str], commands: &[&str]) -> Ran {
     let mut command = bench.command(arguments);
     command.stdin(Stdio::piped()).stdout(Stdio::piped()).stderr(Stdio::piped());
     let mut child = command.spawn().expect("the binary runs");

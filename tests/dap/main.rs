@@ -5,5 +5,6 @@
 
 mod bad;
 mod client;
+mod recovery;
 mod session;
 mod tape;

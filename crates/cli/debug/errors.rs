@@ -32,7 +32,8 @@ impl Front<'_> {
         let mut lines = vec![format!("error {name} is due at {}", report::line_of(module, pc))];
         let Some(intent) = self.session.intent() else { return lines };
         lines.push(format!("next: {}", intent.words(module)));
-        if matches!(intent.what, Intended::Back { .. } | Intended::InPlace) {
+        let is_attempt = matches!(intent.what, Intended::Back { .. } | Intended::InPlace);
+        if is_attempt && !std::mem::replace(&mut self.is_told_how, true) {
             let how = "`continue` goes that way, `step` by statements, `recover` until it is past; \
                        `reverse-next` goes back by hand";
             lines.push(how.to_owned());
@@ -40,7 +41,7 @@ impl Front<'_> {
         lines
     }
 
-    /// What comes of a fault, and what must be done before.
+    /// What comes of a fault or a trap, and what must be done before.
     pub(super) fn fault_words(&self, direction: Direction) -> Vec<String> {
         let is_live = self.session.mode() != Mode::Rewound;
         let then = match self.session.is_over() {

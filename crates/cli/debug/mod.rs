@@ -1,8 +1,8 @@
 //! The debugger at a terminal: commands in words, answers in words or as JSON Lines.
 //!
 //! Reading order: [`table`], the commands; [`lines`], where they come from; `walk`, `errors`,
-//! `stops`, `values`, `code` and `tries`, what each does with the session; `complete`, what the line editor
-//! offers. It knows words and columns, and nothing of how a moment is reached.
+//! `stops`, `values`, `code` and `tries`, what each does with the session; `complete`, what the line
+//! editor offers. It knows words and columns, and nothing of how a moment is reached.
 
 mod code;
 mod complete;
@@ -76,6 +76,8 @@ pub(crate) struct Front<'p> {
     face: Face,
     /// The file and the line behind what was listed last.
     listed: Option<(u16, usize)>,
+    /// Whether it was told once how one goes on from an error.
+    is_told_how: bool,
     is_over: bool,
 }
 
@@ -83,7 +85,7 @@ impl<'p> Front<'p> {
     pub(crate) fn over(session: Session<'p, Sim>, face: Face) -> Self {
         let module = session.module();
         let margin = Margin::of(module);
-        Self { session, module, margin, face, listed: None, is_over: false }
+        Self { session, module, margin, face, listed: None, is_told_how: false, is_over: false }
     }
 
     /// What was learned of errors.

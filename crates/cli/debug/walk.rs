@@ -143,7 +143,7 @@ impl Front<'_> {
         let ending = ending(stop.clone(), self.session.machine());
         let mut lines = ending.map(|ending| self.end_words(&ending)).unwrap_or_default();
         match stop {
-            Stop::Fault { .. } => lines.extend(self.fault_words(direction)),
+            Stop::Fault { .. } | Stop::Trap(_) => lines.extend(self.fault_words(direction)),
             Stop::Refused(_) => {
                 let hint = "`goto` and `last` show what was before, and command nothing";
                 lines.push(hint.to_owned());

@@ -75,7 +75,7 @@ impl Going {
             Halt::Stopped(_) | Halt::Changed | Halt::StartOfRecording if is_still => {
                 Begun::Refused(halt)
             }
-            Halt::EndOfRecording if is_still => Begun::Refused(halt),
+            Halt::EndOfRecording | Halt::Held if is_still => Begun::Refused(halt),
             halt => Begun::Halted(halt),
         }
     }

@@ -40,9 +40,9 @@ pub(crate) fn retraced<'p, C: Workcell>(run: &Run<'p, C>, at: &Rewound<'p>) -> R
 /// Whether the machine was to do otherwise than the program says, at a moment of a recording.
 pub(crate) fn is_altered(run: &Run<'_, impl Workcell>, at: &Rewound<'_>) -> bool {
     let until = run.recording().stretches.iter().take(at.stretch() + 1);
-    let alterations = until.filter_map(|stretch| match stretch.order {
+    let mut alterations = until.rev().filter_map(|stretch| match stretch.order {
         Order::Alter(alteration) => Some(alteration.is_some()),
         _ => None,
     });
-    alterations.last().unwrap_or(false)
+    alterations.next().unwrap_or(false)
 }

@@ -9,12 +9,12 @@
 //! [`trail`], what it may be taken back to; [`strategy`], the ways of recovering; [`incident`], an
 //! error at a place and what has been tried, with the words for a place, a fault that becomes an
 //! error and what the program asks for (`place`, `fault`, `asked`); [`depth`], how far to go back
-//! next; [`memory`], what was learned of that, with the codes of
-//! what is wrong with its text ([`mod@code`]), and `belief`, what follows; [`foresight`], who would
-//! know better; [`change`], what is done otherwise on the way forward again; [`tell`], what a
-//! person is told, in which [`words`](mod@words), and the tape (`noted`); [`recovering`], where a run stands between two looks at
-//! it; [`mod@recover`], the loop, `plan`, what is decided in it, and `attempt`, one way back and
-//! forward again.
+//! next; [`memory`], what was learned of that, with the codes of what is wrong with its text
+//! ([`mod@code`]), and `belief`, what follows; [`foresight`], who would know better; [`change`],
+//! what is done otherwise on the way forward again; [`tell`], what a person is told, in words
+//! ([`words`](mod@words)), and the tape (`noted`); [`recovering`], where a run stands between two
+//! looks at it; [`mod@recover`], the loop, `plan`, what is decided in it, and `attempt`, one way
+//! back and forward again.
 
 mod asked;
 mod attempt;

@@ -170,30 +170,32 @@ impl<'p, C: Workcell> Run<'_, 'p, '_, C> {
         self.close_passed();
         let stop = if most == 0 { Stop::Budget } else { self.forward(most) };
         self.close_passed();
-        match &stop {
-            Stop::Budget if most > 0 => return Advance::On,
+        match stop {
+            Stop::Budget if most > 0 => Advance::On,
             Stop::Due { error, pc } => {
-                self.at.phase = Phase::Due { error: *error, pc: *pc };
-                self.at.is_raised = false;
-                return Advance::Stopped(stop);
-            }
-            Stop::Fault { fault, pc, direction: Direction::Forward } => {
-                if self.tell_fault(fault, *pc) || self.can_leave() {
-                    self.at.phase = Phase::Faulted { fault: fault.clone(), pc: *pc };
-                    return Advance::Stopped(stop);
-                }
-            }
-            _ => {}
-        }
-        let is_trap = matches!(stop, Stop::Trap(_));
-        let ended = drive::ending(stop.clone(), self.driven.machine());
-        match ended {
-            Some(ending) if is_trap && self.can_leave() => {
-                self.at.phase = Phase::Leaving(ending);
+                (self.at.phase, self.at.is_raised) = (Phase::Due { error, pc }, false);
                 Advance::Stopped(stop)
             }
-            ended => self.goes_on_unless(ended),
+            Stop::Fault { fault, pc, direction: Direction::Forward } => self.faulted(fault, pc),
+            Stop::Trap(trap) if self.can_leave() => {
+                self.at.phase = Phase::Leaving(Ending::Trap(trap));
+                Advance::Stopped(stop)
+            }
+            stop => {
+                let ended = drive::ending(stop, self.driven.machine());
+                self.goes_on_unless(ended)
+            }
         }
+    }
+
+    /// The workcell did not do as commanded: something follows that, or the run has ended.
+    fn faulted(&mut self, fault: Fault, pc: u32) -> Advance {
+        let direction = Direction::Forward;
+        if self.tell_fault(&fault, pc) || self.can_leave() {
+            self.at.phase = Phase::Faulted { fault: fault.clone(), pc };
+            return Advance::Stopped(Stop::Fault { fault, pc, direction });
+        }
+        self.goes_on_unless(Some(Ending::Fault { fault, pc, direction }))
     }
 
     /// Whether there is a cleanup that can follow.

@@ -102,6 +102,13 @@ pub(crate) struct Begun {
     joints: JointConfiguration,
 }
 
+impl Begun {
+    /// Whether it is the motion of an instruction that so many others lay before.
+    fn is_at(&self, steps: u64, pc: u32) -> bool {
+        (self.steps, self.pc) == (steps, pc)
+    }
+}
+
 /// Something on the way other than an action.
 #[derive(Clone, Debug, PartialEq)]
 enum Post {
@@ -327,6 +334,10 @@ impl<'m> Trail<'m> {
         if event.open_blocks > 0 || !is_motion(event) {
             return self.motions.clear();
         }
+        // One that was taken back half way and is done again began where it began first.
+        if self.motions.back().is_some_and(|newest| newest.is_at(steps, event.pc)) {
+            return;
+        }
         if self.motions.len() == MOTIONS_MAX {
             self.motions.pop_front();
         }
@@ -423,7 +434,9 @@ impl<'m> Trail<'m> {
     pub fn cut_into(&mut self, steps: u64, pc: u32) {
         let next = self.actions.iter().find(|action| action.steps >= steps);
         let began_an_action = next.is_some_and(|action| action.steps == steps);
+        let begun = self.motions.iter().find(|motion| motion.is_at(steps, pc)).copied();
         self.cut(steps);
+        self.motions.extend(begun);
         if let (false, Some(newest)) = (began_an_action, self.actions.last_mut()) {
             newest.last_pc = newest.last_pc.min(pc.saturating_sub(1));
         }

@@ -10,7 +10,7 @@ use obverse_debugger::{Breakpoint, Grain, Halt, Moment, Places, Policy, Run, Ses
 use obverse_recovery::{
     Bounds, Ending, Memory, Recovery, Step, Strategy, Subject, Teller, recover,
 };
-use obverse_vm::{Direction, Event, Limits, Machine, Observer};
+use obverse_vm::{Direction, Event, Limits, Machine, Observer, Stop};
 use obverse_workcell::Workcell;
 use std::sync::{Arc, Mutex};
 
@@ -150,4 +150,68 @@ fn walk_to_end(session: &mut Session<'_, Logged>, walks: &[u8]) -> Vec<String> {
         }
     }
     halts
+}
+
+/// Whoever goes back by hand in between, wherever a recovery stands, comes to an end all the same
+/// by going on; and from there back to the start, bit for bit, or to what cannot be taken back.
+///
+/// # Errors
+/// Those of the randomness.
+///
+/// # Panics
+/// If it is not so.
+pub fn takes_a_hand(u: &mut Unstructured<'_>) -> Result<bool> {
+    let fraction = f64::from(u.int_in_range(0_u8..=10)?) / 10.0;
+    let mut cell = Logged::new(u.arbitrary()?);
+    cell.ledger.stop_at = Some((u.int_in_range(0..=40)?, fraction));
+    let walks: [u8; 24] = u.arbitrary()?;
+    let options = Options { allow_overrides: false, ..Options::default() };
+    let source = all_reversing(&programs::generate(u, options)?);
+    let program = recovery_laws::program(&source, |module| {
+        if let Some(error) = module.errors.first_mut() {
+            error.faults = vec![FaultName::ProtectiveStop];
+        }
+    });
+    let Ok(run) = Run::new(&program, cell) else { return Ok(false) };
+    let mut session = Session::over(run);
+    session.limit(20_000);
+    let start = session.digest();
+    let mut was_recovering = false;
+    for walk in walks {
+        let (way, walk) = match walk % 8 {
+            0 => (Direction::Reverse, Walk::Step(Grain::Instruction)),
+            1 => (Direction::Reverse, Walk::Next(Grain::Statement)),
+            2 => (Direction::Reverse, Walk::Finish),
+            3 => (Direction::Forward, Walk::Step(Grain::Instruction)),
+            4 => (Direction::Forward, Walk::Next(Grain::Statement)),
+            _ => (Direction::Forward, Walk::Continue),
+        };
+        was_recovering |= way == Direction::Reverse && session.is_recovering();
+        if session.go(way, walk) == Halt::Held {
+            let _ = session.release();
+        }
+        let _told = session.intent();
+    }
+    let mut halt = Halt::Done;
+    for _ in 0..1_000 {
+        halt = session.go(Direction::Forward, Walk::Continue);
+        if halt == Halt::Held {
+            let _ = session.release();
+        }
+        if session.is_over() || halt == Halt::Limit {
+            break;
+        }
+    }
+    assert!(session.is_over() || halt == Halt::Limit, "{walks:?}, {halt:?}\n{source}");
+    let _ = session.release();
+    session.limit(u64::MAX);
+    let back = session.go(Direction::Reverse, Walk::Continue);
+    match &back {
+        Halt::Stopped(Stop::AtStart) => {
+            assert_eq!(session.digest(), start, "{walks:?}, {halt:?}\n{source}");
+        }
+        Halt::Stopped(Stop::Refused(_) | Stop::Fault { .. }) => {}
+        _ => panic!("{walks:?}, {halt:?}, back: {back:?}\n{source}"),
+    }
+    Ok(was_recovering)
 }

@@ -220,6 +220,7 @@ fn a_fault_that_the_program_names_is_its_error_once_the_arm_is_released() {
     let before = (session.digest(), session.recording().end);
     for walk in [Walk::Continue, Walk::Recover, Walk::Step(Grain::Instruction)] {
         assert_eq!(session.go(Forward, walk), Halt::Held);
+        assert_eq!(session.go(Reverse, walk), Halt::Held);
     }
     assert_eq!((session.digest(), session.recording().end), before, "nothing has moved");
     session.release().expect("it is live");

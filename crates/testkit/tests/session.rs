@@ -75,7 +75,7 @@ fn load(program: &str) -> (Verified, Cell) {
 /// The workcell of a seed; every third has a fault in store, which may stop the arm.
 fn workcell(cell: &Cell, seed: u64) -> Faulty {
     let mut faulty = Faulty::new(Sim::new(cell, seed));
-    if seed % 3 == 0 {
+    if seed.is_multiple_of(3) {
         let kind = FaultKind::ALL[(seed / 3) as usize % FaultKind::ALL.len()];
         faulty.plan(kind, FaultPlan { act: seed % 17, fraction: 0.4 });
     }

@@ -140,7 +140,7 @@ impl<'p, C: Workcell> Session<'p, C> {
     }
 
     fn go_live(&mut self, direction: Direction, walk: Walk) -> Halt {
-        if direction == Direction::Forward && self.is_held() {
+        if self.is_held() {
             return Halt::Held;
         }
         let module = self.module();
