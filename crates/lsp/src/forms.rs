@@ -107,8 +107,8 @@ const PARTS: [Part; 21] = [
 pub(crate) struct Command {
     /// Its form.
     pub(crate) label: String,
-    /// The parts of that to be filled in: where they stand in it, in characters, and what is said of
-    /// them.
+    /// The parts of that to be filled in: where they stand in it, in characters, and what is said
+    /// of them.
     pub(crate) parts: Vec<(Range<usize>, &'static str)>,
     /// The part at hand; one more than there are, if none is.
     pub(crate) active: usize,
@@ -121,7 +121,7 @@ enum Token {
     Part(&'static Part),
 }
 
-/// The command that a text ends in, if it ends in one, and where its first word is among the pieces.
+/// The command that a text ends in, if it ends in one.
 pub(crate) fn command(before: &Before<'_>) -> Option<Command> {
     let begin = begin(before)?;
     let first = before.at(begin);
@@ -135,9 +135,9 @@ pub(crate) fn command(before: &Before<'_>) -> Option<Command> {
     Some(Command { label, parts, active })
 }
 
-/// The piece that the last command begins with: the last that begins a line, or that follows a brace
-/// or a semicolon, but for lines that go on with a command.
-pub(crate) fn begin(before: &Before<'_>) -> Option<usize> {
+/// The piece that the last command begins with: the last that begins a line, or that follows a
+/// brace or a semicolon, but for lines that go on with a command.
+fn begin(before: &Before<'_>) -> Option<usize> {
     for index in (0..before.pieces.len()).rev() {
         let text = before.at(index);
         if matches!(text, "{" | "}" | ";") {
@@ -148,8 +148,7 @@ pub(crate) fn begin(before: &Before<'_>) -> Option<usize> {
         if !is_first && !before.gap_before(index).contains(['\n', '\r']) {
             continue;
         }
-        let is_command =
-            text == "call" || FORMS.iter().any(|form| form.split(' ').next() == Some(text));
+        let is_command = FORMS.iter().any(|form| form.split(' ').next() == Some(text));
         if is_command {
             return Some(index);
         }

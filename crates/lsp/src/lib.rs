@@ -3,9 +3,9 @@
 //! [`Workspace`] holds what is open and answers questions about it, data in and data out; [`serve`]
 //! speaks the Language Server Protocol over a connection. Read `workspace` and `program`, then
 //! `steps` (what is known of going back), then a module a question: `diagnostics`, `hover` with
-//! `backwards`, `navigate`, `rename`, `completion` and `signature` with `forms` (both look at what is
-//! written `before`), `tokens`, `hints`. Files are read by whoever gives a [`Disk`]. Nothing here runs
-//! a program, prints, or knows a machine.
+//! `backwards`, `navigate`, `rename`, `completion` and `signature` with `forms` (both look at what
+//! is written `before`), `tokens`, `hints`. Files are read by whoever gives a [`Disk`]. Nothing
+//! here runs a program, prints, or knows a machine.
 
 mod backwards;
 mod before;
