@@ -25,8 +25,10 @@ async function start() {
   try {
     await client.start();
   } catch (error) {
-    const why = `The command \`${server.command}\` cannot be run: ${error.message}. `;
-    vscode.window.showErrorMessage(`${why}Set \`obverse.path\` to where it is.`);
+    // What the client fails with need not be an error.
+    const why = (error && error.message) || error || "it does not answer";
+    const said = `The command \`${server.command}\` cannot be run: ${why}. `;
+    vscode.window.showErrorMessage(`${said}Set \`obverse.path\` to where it is.`);
   }
 }
 

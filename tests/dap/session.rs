@@ -79,6 +79,24 @@ fn what_was_done_is_taken_back_step_by_step() {
     assert_eq!(client.bye("back"), Some(0));
 }
 
+/// At the start there is no call but that of the program itself: it is shown as any other.
+#[test]
+fn the_start_is_shown_as_any_place_when_the_run_is_back_there() {
+    let mut client = Client::at_entry("bad_pin.obv");
+    let stack = |client: &mut Client| client.ok("stackTrace", json!({ "threadId": 1 }));
+    let outer = stack(&mut client)["stackFrames"][1].clone();
+    assert_eq!(
+        (&outer["name"], &outer["presentationHint"]),
+        (&json!("the start"), &json!("subtle"))
+    );
+    client.go("reverseContinue", json!({}));
+    let shown = stack(&mut client);
+    assert_eq!(shown["totalFrames"], 1);
+    let start = &shown["stackFrames"][0];
+    assert_eq!((&start["name"], &start["presentationHint"]), (&json!("the start"), &json!(null)));
+    assert_eq!(client.bye("start"), Some(0));
+}
+
 #[test]
 fn breakpoints_of_all_kinds_stop_a_run() {
     let mut client = Client::at_entry("glue.obv");

@@ -51,8 +51,8 @@ fn the_extension_speaks_of_what_there_is() {
         properties.as_object().expect("properties").keys().cloned().collect()
     };
     assert_eq!(debugger["type"], "obverse");
-    assert_eq!(attributes("launch"), ["program", "seed", "stopOnEntry", "workcell"]);
-    assert_eq!(attributes("attach"), ["program", "tape", "workcell"]);
+    assert_eq!(attributes("launch"), ["after", "program", "seed", "stopOnEntry", "workcell"]);
+    assert_eq!(attributes("attach"), ["after", "program", "tape", "workcell"]);
 }
 
 /// Lock files name no place that packages come from: that is the business of who installs.

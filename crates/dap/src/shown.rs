@@ -5,6 +5,7 @@
 use crate::debuggee::Debuggee;
 use crate::message::StackTrace;
 use crate::places;
+use obverse_bytecode::FunctionKind;
 use obverse_debugger::session::{FrameView, Variable};
 use obverse_debugger::{Subject, Value as Known};
 use obverse_isa::{ErrorId, Setting};
@@ -42,8 +43,14 @@ impl Debuggee<'_, '_, '_> {
             "column": 0,
             "instructionPointerReference": frame.pc.to_string(),
         });
-        if frame.name.starts_with('$') {
-            shown["presentationHint"] = json!("subtle");
+        let module = self.session.module();
+        let function = module.functions.get(usize::from(frame.function));
+        if function.is_some_and(|function| function.kind == FunctionKind::Start) {
+            shown["name"] = json!("the start");
+            // An editor shows the variables of what is not subtle, and here is nothing else.
+            if self.session.frames().len() > 1 {
+                shown["presentationHint"] = json!("subtle");
+            }
         }
         if let Some(place) = &frame.place {
             shown["line"] = json!(self.server.client.line(place.line));

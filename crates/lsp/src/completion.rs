@@ -1,13 +1,14 @@
 //! What may be written next: the words that the grammar allows, names of the kind that is needed,
 //! keyframes behind an item, units behind a number. A list that is not long.
 
+use crate::before::Before;
 use crate::workspace::{InProgram, Workspace};
 use lsp_types::{CompletionItem, CompletionItemKind, CompletionList, Position, Uri};
 use obverse_compiler::symbols::{self, Symbol, SymbolKind};
 use obverse_syntax::UNITS;
 use obverse_syntax::codes::Code;
 use obverse_syntax::expected::{Expected, expected_after};
-use obverse_syntax::highlight::{Piece, PieceKind, pieces};
+use obverse_syntax::highlight::PieceKind;
 
 /// The most that is offered.
 const MOST_OFFERED: usize = 200;
@@ -53,51 +54,30 @@ impl Workspace {
 /// A place where somebody is writing.
 struct Writing<'w> {
     file: &'w InProgram,
-    /// The text before the word in hand.
-    before: &'w str,
-    /// Its pieces, without comments.
-    pieces: Vec<Piece>,
+    before: Before<'w>,
     expected: Expected,
 }
 
 impl<'w> Writing<'w> {
     /// The place at an offset of a text; none within a text in quotes or a comment.
     fn of(file: &'w InProgram, text: &'w str, offset: usize) -> Option<Self> {
-        let until = text.get(..offset)?;
-        let is_word = |c: char| c.is_ascii_alphanumeric() || c == '_';
-        let word = until.trim_end_matches(is_word).len();
-        let digits = until[word..].bytes().take_while(u8::is_ascii_digit).count();
-        let before = &until[..word + digits];
-        let line = before.rfind(['\n', '\r']).map_or(0, |end| end + 1);
-        let pieces = pieces(before);
-        let is_commented = pieces.last().is_some_and(|last| {
-            last.kind == PieceKind::Comment && last.span.end as usize == before.len()
-        });
-        let is_quoted = before[line..].matches('"').count() % 2 == 1;
-        if is_commented || is_quoted {
-            return None;
-        }
-        let pieces: Vec<Piece> =
-            pieces.into_iter().filter(|piece| piece.kind != PieceKind::Comment).collect();
-        let expected = expected_after(before).unwrap_or_default();
-        Some(Self { file, before, pieces, expected })
+        let before = Before::of(text, offset)?;
+        let expected = expected_after(before.text).unwrap_or_default();
+        Some(Self { file, before, expected })
     }
 
     /// The piece so many pieces ago, as text.
     fn ago(&self, count: usize) -> &'w str {
-        let piece = self.pieces.len().checked_sub(count).and_then(|at| self.pieces.get(at));
-        let range = piece.map(|piece| piece.span.start as usize..piece.span.end as usize);
-        range.and_then(|range| self.before.get(range)).unwrap_or("")
+        self.before.ago(count)
     }
 
     /// Whether the line of the last piece goes on.
     fn is_same_line(&self) -> bool {
-        let end = self.pieces.last().map_or(0, |last| last.span.end as usize);
-        !self.before[end..].contains(['\n', '\r'])
+        self.before.is_same_line()
     }
 
     fn items(&self) -> Vec<CompletionItem> {
-        let last = self.pieces.last().map(|piece| piece.kind);
+        let last = self.before.pieces.last().map(|piece| piece.kind);
         let is_number = last == Some(PieceKind::Number) || self.ago(1) == "]";
         let mut items = Vec::new();
         if is_number && self.is_same_line() {
@@ -163,10 +143,8 @@ impl<'w> Writing<'w> {
     }
 
     fn pieces_of(&self, sign: &str) -> usize {
-        let is_sign = |piece: &&Piece| {
-            self.before.get(piece.span.start as usize..piece.span.end as usize) == Some(sign)
-        };
-        self.pieces.iter().filter(is_sign).count()
+        let all = 0..self.before.pieces.len();
+        all.filter(|&index| self.before.at(index) == sign).count()
     }
 
     /// What can stand in an expression here, and in a call the names of parameters.
@@ -198,7 +176,7 @@ impl<'w> Writing<'w> {
     /// What is called, if this is among the arguments of a call.
     fn callee(&self) -> Option<&'w str> {
         let mut depth = 0;
-        for count in 1..=self.pieces.len() {
+        for count in 1..=self.before.pieces.len() {
             match self.ago(count) {
                 ")" => depth += 1,
                 "(" if depth > 0 => depth -= 1,
@@ -239,7 +217,7 @@ impl<'w> Writing<'w> {
     /// What can be seen here of some kinds.
     fn visible(&self, kinds: &[SymbolKind]) -> Vec<CompletionItem> {
         let program = &self.file.program;
-        let offset = program.start(self.file.file) + self.before.len() as u32;
+        let offset = program.start(self.file.file) + self.before.text.len() as u32;
         let seen = program.symbols.visible(offset);
         seen.filter(|(_, symbol)| kinds.contains(&symbol.kind)).map(|(_, one)| named(one)).collect()
     }

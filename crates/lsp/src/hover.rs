@@ -218,7 +218,7 @@ fn is_run(kind: SymbolKind) -> bool {
 }
 
 /// The units of a type.
-fn unit_of(name: &str) -> Option<&'static str> {
+pub(crate) fn unit_of(name: &str) -> Option<&'static str> {
     let units = match name {
         "length" => "um, mm, cm or m",
         "angle" => "deg or rad",

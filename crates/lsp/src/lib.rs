@@ -3,13 +3,16 @@
 //! [`Workspace`] holds what is open and answers questions about it, data in and data out; [`serve`]
 //! speaks the Language Server Protocol over a connection. Read `workspace` and `program`, then
 //! `steps` (what is known of going back), then a module a question: `diagnostics`, `hover` with
-//! `backwards`, `navigate`, `rename`, `completion`, `tokens`, `hints`. Files are read by whoever
-//! gives a [`Disk`]. Nothing here runs a program, prints, or knows a machine.
+//! `backwards`, `navigate`, `rename`, `completion` and `signature` with `forms` (both look at what
+//! is written `before`), `tokens`, `hints`. Files are read by whoever gives a [`Disk`]. Nothing
+//! here runs a program, prints, or knows a machine.
 
 mod backwards;
+mod before;
 mod completion;
 mod diagnostics;
 mod disk;
+mod forms;
 mod hints;
 mod hover;
 mod navigate;
@@ -17,6 +20,7 @@ mod position;
 mod program;
 mod rename;
 mod server;
+mod signature;
 mod steps;
 mod tokens;
 mod uri;

@@ -12,7 +12,8 @@ use lsp_types::{
     InitializeResult, InlayHintRequest, LspRequestMethod, PrepareRenamePlaceholder,
     PrepareRenameRequest, PrepareRenameResult, ReferencesRequest, RenameOptions, RenameProvider,
     RenameRequest, Request as Asked, SemanticTokensOptions, SemanticTokensRequest,
-    ServerCapabilities, ServerInfo, TextDocumentSyncKind, TextDocumentSyncOptions,
+    ServerCapabilities, ServerInfo, SignatureHelpOptions, SignatureHelpRequest,
+    TextDocumentSyncKind, TextDocumentSyncOptions,
 };
 use obverse_compiler::library;
 use serde_json::{Value, json};
@@ -31,6 +32,12 @@ pub(super) fn initialized() -> InitializeResult {
     };
     // Not a blank: a list that opens by itself would take the end of the line for a choice.
     let trigger = [".", ":"].map(str::to_owned).to_vec();
+    // A command is told of where one asks, and then further as it is written.
+    let signatures = SignatureHelpOptions {
+        trigger_characters: Some(["(", ",", ":"].map(str::to_owned).to_vec()),
+        retrigger_characters: Some(vec![" ".to_owned()]),
+        ..SignatureHelpOptions::default()
+    };
     let tokens =
         SemanticTokensOptions { legend: legend(), full: Some(true.into()), ..Default::default() };
     let rename = RenameOptions { prepare_provider: Some(true), ..RenameOptions::default() };
@@ -44,6 +51,7 @@ pub(super) fn initialized() -> InitializeResult {
             trigger_characters: Some(trigger),
             ..CompletionOptions::default()
         }),
+        signature_help_provider: Some(signatures),
         hover_provider: Some(true.into()),
         definition_provider: Some(true.into()),
         references_provider: Some(true.into()),
@@ -117,6 +125,10 @@ pub(super) fn answer(workspace: &mut Workspace, request: Request) -> Response {
             let at = params.text_document_position_params;
             let found = workspace.completion(&at.text_document.uri, at.position);
             Ok(Some(CompletionResponse::CompletionList(found)))
+        }),
+        Method::TextDocumentSignatureHelp => reply::<SignatureHelpRequest>(request, |params| {
+            let at = params.text_document_position_params;
+            Ok(workspace.signature(&at.text_document.uri, at.position))
         }),
         _ => of_document(workspace, request, &method),
     }

@@ -9,5 +9,6 @@ mod mistakes;
 mod names;
 mod robustness;
 mod several_files;
+mod signatures;
 mod support;
 mod writing;

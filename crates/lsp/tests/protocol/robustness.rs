@@ -8,7 +8,7 @@ use serde_json::{Value, json};
 /// Every question about a place, and about a text.
 fn ask_everything(editor: &mut Editor, name: &str, line: u64, character: u64) {
     let at = json!({ "line": line, "character": character });
-    for method in ["hover", "definition", "documentHighlight", "completion"] {
+    for method in ["hover", "definition", "documentHighlight", "completion", "signatureHelp"] {
         let answer = editor.at(method, name, at.clone());
         assert!(answer.is_ok(), "{method} at {line}:{character}: {answer:?}");
     }
