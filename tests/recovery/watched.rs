@@ -191,6 +191,10 @@ fn in_a_fork_it_is_answered_in_the_branch_whose_turn_it_is() {
         let run = Case::new(source, 0.1 * f64::from(tenth)).run();
         assert_eq!(run.ending, Ending::Finished, "{tenth}");
         assert!(run.is_identical, "{tenth}");
+        // Acts are watched at every instant of the branches' time.
+        let began_s: Vec<f64> = run.incidents.iter().map(|incident| incident.began_s).collect();
+        assert_eq!(began_s.len(), 1, "{tenth}");
+        println!("{tenth} {began_s:?}");
     }
 }
 
