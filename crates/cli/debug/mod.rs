@@ -1,8 +1,8 @@
 //! The debugger at a terminal: commands in words, answers in words or as JSON Lines.
 //!
 //! Reading order: [`table`], the commands; [`lines`], where they come from; `walk`, `errors`,
-//! `stops`, `values`, `code` and `tries`, what each does with the session; `complete`, what the line
-//! editor offers. It knows words and columns, and nothing of how a moment is reached.
+//! `stops`, `values`, `code` and `tries`, what each does with the session; `complete`, what the
+//! line editor offers. It knows words and columns, and nothing of how a moment is reached.
 
 mod code;
 mod complete;

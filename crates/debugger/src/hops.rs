@@ -50,13 +50,14 @@ impl<'r, 'p, C: Workcell> Hops<'r, 'p, C> {
         self.stops.is_some_and(|stops| stops.has(pc))
     }
 
-    fn forward(&mut self, observer: &mut dyn Observer) -> Stop {
+    fn forward(&mut self, instructions: u64, observer: &mut dyn Observer) -> Stop {
+        let until = self.live.past.recording.end.after(instructions);
         let mut most = BURST;
         loop {
             let commands = self.live.past.recording.log.frames.len();
             let is_close = self.is_at_stop() || self.live.past.machine.state().is_compensating();
             let pace = match self.stops {
-                Some(stops) if !is_close => Pace::To(stops, most),
+                Some(stops) if !is_close => Pace::To(stops, most.min(instructions)),
                 _ => Pace::Step,
             };
             let is_step = matches!(pace, Pace::Step);
@@ -64,7 +65,8 @@ impl<'r, 'p, C: Workcell> Hops<'r, 'p, C> {
             if let Some(stop) = driven.stop {
                 return stop;
             }
-            if is_step || self.interrupt.load(Ordering::Relaxed) || self.is_at_stop() {
+            let is_over = is_step || self.live.past.recording.end >= until;
+            if is_over || self.interrupt.load(Ordering::Relaxed) || self.is_at_stop() {
                 return Stop::Budget;
             }
             let is_slow = self.live.past.recording.log.frames.len() > commands;
@@ -92,9 +94,14 @@ impl<'p, C: Workcell> recovery::Driven<'p, C> for Hops<'_, 'p, C> {
         self.live.cell
     }
 
-    fn run(&mut self, direction: Direction, _: u64, observer: &mut dyn Observer) -> Stop {
+    fn run(
+        &mut self,
+        direction: Direction,
+        instructions: u64,
+        observer: &mut dyn Observer,
+    ) -> Stop {
         match direction {
-            Direction::Forward => self.forward(observer),
+            Direction::Forward => self.forward(instructions, observer),
             Direction::Reverse => {
                 self.drive(Order::Reverse, Pace::Step, observer).stop.unwrap_or(Stop::Budget)
             }

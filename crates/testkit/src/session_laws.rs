@@ -11,8 +11,11 @@ use obverse_recovery::{
     Bounds, Ending, Memory, Recovery, Step, Strategy, Subject, Teller, recover,
 };
 use obverse_vm::{Direction, Event, Limits, Machine, Observer, Stop};
-use obverse_workcell::Workcell;
+use obverse_workcell::{Arm, Workcell};
 use std::sync::{Arc, Mutex};
+
+/// How far the arm may be off a place that it was taken back to, in radians.
+const NEAR_RAD: f64 = 1e-4;
 
 /// Tells what happens in words, into a list that others hold too.
 #[derive(Clone, Default)]
@@ -153,7 +156,9 @@ fn walk_to_end(session: &mut Session<'_, Logged>, walks: &[u8]) -> Vec<String> {
 }
 
 /// Whoever goes back by hand in between, wherever a recovery stands, comes to an end all the same
-/// by going on; and from there back to the start, bit for bit, or to what cannot be taken back.
+/// by going on; and from there back to the start, or to what cannot be taken back. The program's
+/// state is then what it was, bit for bit, and the outputs; the arm is there but for what motions
+/// came to that ended where they began, near enough.
 ///
 /// # Errors
 /// Those of the randomness.
@@ -172,6 +177,7 @@ pub fn takes_a_hand(u: &mut Unstructured<'_>) -> Result<bool> {
             error.faults = vec![FaultName::ProtectiveStop];
         }
     });
+    let unmoved = cell.clone();
     let Ok(run) = Run::new(&program, cell) else { return Ok(false) };
     let mut session = Session::over(run);
     session.limit(20_000);
@@ -208,7 +214,12 @@ pub fn takes_a_hand(u: &mut Unstructured<'_>) -> Result<bool> {
     let back = session.go(Direction::Reverse, Walk::Continue);
     match &back {
         Halt::Stopped(Stop::AtStart) => {
-            assert_eq!(session.digest(), start, "{walks:?}, {halt:?}\n{source}");
+            let what = format!("{walks:?}, {halt:?}\n{source}");
+            assert_eq!(session.machine().digest(&unmoved), start, "{what}");
+            let Some(cell) = session.run().cell() else { panic!("it is live: {what}") };
+            assert_eq!(cell.ledger.outputs, unmoved.ledger.outputs, "{what}");
+            let off_rad = cell.joints().largest_difference_rad(&unmoved.joints());
+            assert!(off_rad < NEAR_RAD, "{off_rad} rad off: {what}");
         }
         Halt::Stopped(Stop::Refused(_) | Stop::Fault { .. }) => {}
         _ => panic!("{walks:?}, {halt:?}, back: {back:?}\n{source}"),

@@ -140,10 +140,13 @@ impl<'p, C: Workcell> Session<'p, C> {
         }
     }
 
-    /// Go on with the live run, up to the next place that may matter.
-    pub(super) fn advance(&mut self, stops: Option<&Stops>) -> Option<Advance> {
+    /// Go on with the live run, up to the next place that may matter, for about so many
+    /// instructions at the most.
+    pub(super) fn advance(&mut self, stops: Option<&Stops>, most: u64) -> Option<Advance> {
         self.settle_hand();
-        self.with(stops, |at, hops, recovery, teller| at.advance(hops, u64::MAX, recovery, teller))
+        self.with(stops, |at, hops, recovery, teller| {
+            at.advance(hops, most.max(1), recovery, teller)
+        })
     }
 
     /// A step of the live run in reverse, by hand.

@@ -164,7 +164,8 @@ impl<'p, C: Workcell> Session<'p, C> {
                 depth = state.frames().len();
                 stops = origin.stops(module, state, all.as_ref());
             }
-            if let Some(halt) = self.hop(direction, walk, stops.as_ref()) {
+            let most = until.0 - self.run.recording().end.0;
+            if let Some(halt) = self.hop((direction, walk), stops.as_ref(), most) {
                 return halt;
             }
             if self.is_there(origin) {
@@ -188,14 +189,19 @@ impl<'p, C: Workcell> Session<'p, C> {
     }
 
     /// Live, to the next place that may matter: why that is the end of the walk, if it is.
-    fn hop(&mut self, direction: Direction, walk: Walk, stops: Option<&Stops>) -> Option<Halt> {
+    fn hop(
+        &mut self,
+        (direction, walk): (Direction, Walk),
+        stops: Option<&Stops>,
+        most: u64,
+    ) -> Option<Halt> {
         loop {
             let before = self.look(|look| Before::of(&self.breakpoints, look));
             let moment = self.run.recording().end;
             let (way, halt) = match direction {
                 Direction::Forward => {
                     let way = self.direction();
-                    (way, self.advance(stops).and_then(|advance| self.halt_of(advance, walk)))
+                    (way, self.advance(stops, most).and_then(|advance| self.halt_of(advance, walk)))
                 }
                 Direction::Reverse => (direction, self.take_back().map(Halt::Stopped)),
             };
