@@ -44,7 +44,7 @@ pub use ending::{Ending, GiveUp};
 pub use foresight::Clairvoyant;
 pub use incident::{Attempt, Incident, Outcome, Search};
 pub use memory::{Memory, MemoryError, Subject};
-pub use place::place;
+pub use place::{has_place, place};
 pub use recover::{Foresight, Recovery, Site, recover, recover_in};
 pub use strategy::{Bounds, Strategy};
 pub use tell::{Operator, Step, Teller, Unattended, Why};
