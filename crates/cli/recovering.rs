@@ -4,8 +4,8 @@
 use crate::load::Program;
 use crate::problem::{Message, Problem};
 use crate::report::{self, Report};
-use crate::story::Story;
-use crate::{files, write};
+use crate::story::{self, Story};
+use crate::{files, show, write};
 use obverse_bytecode::Module;
 use obverse_recovery::{
     Incident, Memory, MemoryCode, Operator, Outcome, Step, Strategy, Subject, Teller,
@@ -14,6 +14,9 @@ use obverse_workcell::{Fault, Workcell};
 use serde_json::{Value, json};
 use std::io::{self, BufRead, IsTerminal, Write};
 use std::path::{Path, PathBuf};
+
+/// How many of the things that a memory knows and the program has not are said one by one.
+const LACKING_SHOWN: usize = 3;
 
 /// What a command that runs a program is told of recoveries, a person being there.
 #[derive(clap::Args)]
@@ -70,7 +73,8 @@ impl Kept {
         cell: &str,
     ) -> Result<Self, Problem> {
         let subject = subject(program, cell);
-        let before = path.map_or(Ok(Memory::default()), |path| remembered(path, &subject))?;
+        let before =
+            path.map_or(Ok(Memory::default()), |path| remembered_of(path, program, &subject))?;
         Ok(Self { path: path.map(Path::to_owned), subject, before })
     }
 
@@ -102,6 +106,45 @@ pub(crate) fn subject(program: &Program, cell: &str) -> Subject {
     let source = program.verified.module().sources.first();
     let program = source.map_or(program.path.as_path(), |source| Path::new(&source.name));
     Subject { program: name(program), cell: name(Path::new(cell)) }
+}
+
+/// The memory of a file; what it knows and the program has not is warned of.
+///
+/// # Errors
+/// The file cannot be read, or is no memory of this.
+pub(crate) fn remembered_of(
+    path: &Path,
+    program: &Program,
+    of: &Subject,
+) -> Result<Memory, Problem> {
+    let memory = remembered(path, of)?;
+    let lacking = lacking(&memory, program.verified.module());
+    for text in lacking.iter().take(LACKING_SHOWN) {
+        show::note(&format!("warning: {}: {text}", path.display()));
+    }
+    if let more @ 1.. = lacking.len().saturating_sub(LACKING_SHOWN) {
+        show::note(&format!("warning: {}: and {more} more of that kind", path.display()));
+    }
+    Ok(memory)
+}
+
+/// What a memory knows something of and a program has not, in words.
+fn lacking(memory: &Memory, module: &Module) -> Vec<String> {
+    let lacks = |(error, place): (&str, &str)| {
+        if !module.errors.iter().any(|declared| declared.name == error) {
+            return Some(format!(
+                "the program has no error `{error}`, of which this remembers something; if it is \
+                 the memory of another program, name another file"
+            ));
+        }
+        (!obverse_recovery::has_place(module, place)).then(|| {
+            format!(
+                "the program has no place `{place}`, where this remembers error `{error}`; take \
+                 the [[place]] out if it is gone for good"
+            )
+        })
+    };
+    memory.places().filter_map(lacks).collect()
 }
 
 /// The memory of a file; an empty one where there is no file yet.

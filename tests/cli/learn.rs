@@ -140,8 +140,8 @@ fn without_evidence_nothing_is_written() {
     let ran = bench.ends(1, &learn(&["--json"]));
     assert_eq!(ran.summary()["outcome"], "nothing learned");
     assert_eq!(ran.summary()["out"], serde_json::Value::Null);
-    let told = bench.ends(1, &learn(&["--out", "other"])).stdout;
-    assert!(told.contains("other: not written") && told.contains("0 of "), "{told}");
+    let told = bench.ends(1, &learn(&[])).stdout;
+    assert!(told.contains("best: not written") && told.contains("0 of "), "{told}");
 }
 
 #[test]

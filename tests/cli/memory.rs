@@ -58,3 +58,31 @@ fn what_is_wrong_with_a_memory_is_said_with_its_code_and_it_stays_as_it_is() {
     bench.write("m.toml", [0xff_u8, 0xfe]);
     assert_eq!(codes(), [MemoryCode::Malformed.as_str()]);
 }
+
+/// A program is worked on, and its memory is not refused for that; what it has no more is said.
+#[test]
+fn what_a_memory_knows_and_the_program_has_not_is_warned_of() {
+    let bench = Bench::new("memory_lacking");
+    run(&bench);
+    let with = [&RUN[..], &["m.toml", "--strategy", "fixed:2"]].concat();
+    let ran = bench.run(&with);
+    assert!(!ran.stderr.contains("warning: m.toml"), "{}", ran.stderr);
+    let text = String::from_utf8(bench.read("m.toml")).expect("text");
+    assert!(text.ends_with("[end]\n"), "{text}");
+    for (from, to, words) in [
+        ("error = \"peg_meets_rim\"", "error = \"spilt\"", "no error `spilt`"),
+        ("at = \"main: ", "at = \"elsewhere: ", "no place `elsewhere: "),
+    ] {
+        let other = text.replace(from, to);
+        assert_ne!(other, text);
+        bench.write("m.toml", &other);
+        let ran = bench.run(&with);
+        assert!(ran.code < 2 && ran.stderr.contains("warning: m.toml"), "{}", ran.stderr);
+        assert!(ran.stderr.contains(words), "{words}: {}", ran.stderr);
+        let trials = ["trials", "reversal_policy.obv", "--runs", "3", "--strategy", "learned"];
+        let ran = bench.ends(0, &[&trials[..], &["--memory", "m.toml"]].concat());
+        assert!(ran.stderr.contains(words), "{words}: {}", ran.stderr);
+        let kept = String::from_utf8(bench.read("m.toml")).expect("text");
+        assert!(kept.contains(to), "what it knew is kept: {kept}");
+    }
+}

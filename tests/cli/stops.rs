@@ -1,5 +1,5 @@
-//! Campaigns in which a stop holds the arm: what brought a person is in a table, whether the program
-//! names an error for it or not, and what a person released was not recovered without one.
+//! Campaigns in which a stop holds the arm: what brought a person is in a table, whether the
+//! program names an error for it or not, and what a person released was not recovered without one.
 
 use crate::support::Bench;
 use serde_json::Value;
@@ -107,8 +107,8 @@ fn what_a_person_released_was_not_recovered_without_one() {
     }
 }
 
-/// Who knows what chance has in store is not much worse off than who does not, where a person releases
-/// the arm.
+/// Who knows what chance has in store is not much worse off than who does not, where a person
+/// releases the arm.
 #[test]
 fn the_oracle_sees_past_a_stop() {
     let bench = bench("stops_oracle");

@@ -48,7 +48,7 @@ pub use ending::{Ending, GiveUp};
 pub use foresight::Clairvoyant;
 pub use incident::{Attempt, Incident, Outcome, Search};
 pub use memory::{Memory, MemoryError, Subject};
-pub use place::place;
+pub use place::{has_place, place};
 pub use recover::{Foresight, Recovery, Site, recover, recover_in};
 pub use recovering::{Advance, Intended, Intent, Recovering};
 pub use strategy::{Bounds, PERSON_S, Strategy};

@@ -4,14 +4,15 @@
 //! An incident has a depth that is enough, which nobody sees, and an attempt that goes back as far
 //! helps with a chance that belongs to that depth: a spiral search near the error may need several,
 //! where a part gripped anew nearly always helps. The counts say how far each attempt of an
-//! incident went back and whether the last was enough; `belief` says what follows. Knows nothing
-//! of what an action is, nor of files on a disk.
+//! incident went back and whether the last was enough; `belief` says what follows, `text` what it
+//! looks like when it is kept. Knows nothing of what an action is, nor of files on a disk.
+
+mod text;
+
+pub use text::{MemoryError, Subject};
 
 use crate::belief::Belief;
-use crate::code::MemoryCode;
-use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
-use std::fmt;
 
 /// The greatest depth that is told apart; what is deeper counts as this.
 pub const DEPTH_MAX: usize = 16;
@@ -26,10 +27,6 @@ const FEW: f64 = 5.0;
 /// How many incidents must be known in which going back as far as can be was in vain, before it is
 /// believed that going back may not help.
 const IN_VAIN_MIN: u64 = 5;
-/// The version of the text.
-const VERSION: u32 = 2;
-/// The most kinds of incident that a text may hold.
-const KINDS_MAX: usize = 100_000;
 
 /// What became of incidents of a kind.
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -185,191 +182,10 @@ impl Memory {
     }
 }
 
-/// What recoveries a memory is of: errors and places are names, and those of one program say
-/// nothing of another.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Subject {
-    /// The name of the program's file.
-    pub program: String,
-    /// The name of the workcell's.
-    pub cell: String,
-}
-
-impl fmt::Display for Subject {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "{} in {}", self.program, self.cell)
-    }
-}
-
-/// All that can be said of a text of another version.
-#[derive(Deserialize)]
-struct Versioned {
-    version: u32,
-}
-
-/// The text of a memory.
-#[derive(Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-struct Text {
-    version: u32,
-    program: String,
-    cell: String,
-    #[serde(default)]
-    place: Vec<PlaceText>,
-}
-
-#[derive(Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-struct PlaceText {
-    error: String,
-    at: String,
-    #[serde(default)]
-    incident: Vec<KindText>,
-}
-
-#[derive(Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-struct KindText {
-    depths: Vec<usize>,
-    enough: bool,
-    times: u64,
-}
-
-/// A text that is no memory.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub enum MemoryError {
-    /// It is no text of this kind, or was torn.
-    Malformed {
-        /// What is wrong, with its line where that is known.
-        why: String,
-    },
-    /// It is of another version.
-    Version {
-        /// That which it says.
-        found: u32,
-    },
-    /// It is of another program, or of another workcell.
-    Foreign {
-        /// Of what it is.
-        found: Subject,
-        /// Of what it was to be.
-        wanted: Subject,
-    },
-    /// It says what no run can have come to.
-    Impossible {
-        /// The error.
-        error: String,
-        /// The place.
-        place: String,
-        /// What.
-        what: &'static str,
-    },
-}
-
-impl MemoryError {
-    /// Its code.
-    #[must_use]
-    pub fn code(&self) -> MemoryCode {
-        match self {
-            Self::Malformed { .. } => MemoryCode::Malformed,
-            Self::Version { .. } => MemoryCode::Version,
-            Self::Foreign { .. } => MemoryCode::Foreign,
-            Self::Impossible { .. } => MemoryCode::Impossible,
-        }
-    }
-}
-
-impl fmt::Display for MemoryError {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::Malformed { why } => write!(f, "this is no memory of recoveries: {why}"),
-            Self::Version { found } => write!(
-                f,
-                "this memory is of version {found}, and this is for version {VERSION}; move it \
-                 away to begin anew"
-            ),
-            Self::Foreign { found, wanted } => write!(
-                f,
-                "this memory is of {found}, and not of {wanted}, of which it says nothing; name \
-                 another file, or change `program` and `cell` in it if only names have changed"
-            ),
-            Self::Impossible { error, place, what } => {
-                write!(f, "what it says of error {error} at `{place}` cannot be: {what}")
-            }
-        }
-    }
-}
-
-impl std::error::Error for MemoryError {}
-
-const HEAD: &str = "\
-# What was learned of how far to go back, by error and place: how far each attempt of an incident
-# went back, in actions, whether the last was enough, and how often that was so. Take out a
-# [[place]], or the whole file, to forget it.
-";
-
 impl Memory {
-    /// It as text, to be kept, and of what it is.
-    #[must_use]
-    pub fn to_text(&self, of: &Subject) -> String {
-        let kind = |(kind, times): (&Kind, &u64)| KindText {
-            depths: kind.depths.clone(),
-            enough: kind.is_enough,
-            times: *times,
-        };
-        let place = |((error, at), known): (&(String, String), &Known)| PlaceText {
-            error: error.clone(),
-            at: at.clone(),
-            incident: known.times.iter().map(kind).collect(),
-        };
-        let text = Text {
-            version: VERSION,
-            program: of.program.clone(),
-            cell: of.cell.clone(),
-            place: self.places.iter().map(place).collect(),
-        };
-        format!("{HEAD}{}", toml::to_string(&text).unwrap_or_default())
-    }
-
-    /// The memory of a text that is of this.
-    ///
-    /// # Errors
-    /// What is wrong with it.
-    pub fn from_text(text: &str, of: &Subject) -> Result<Self, MemoryError> {
-        let malformed = |why: &dyn fmt::Display| MemoryError::Malformed { why: why.to_string() };
-        let Versioned { version } = toml::from_str(text).map_err(|error| malformed(&error))?;
-        if version != VERSION {
-            return Err(MemoryError::Version { found: version });
-        }
-        let text: Text = toml::from_str(text).map_err(|error| malformed(&error))?;
-        let found = Subject { program: text.program, cell: text.cell };
-        if found != *of {
-            return Err(MemoryError::Foreign { found, wanted: of.clone() });
-        }
-        if text.place.iter().map(|place| place.incident.len()).sum::<usize>() > KINDS_MAX {
-            return Err(malformed(&"it is too long"));
-        }
-        let mut memory = Self::default();
-        for PlaceText { error, at, incident } in text.place {
-            let mut known = Known::default();
-            for kind in incident {
-                check(&kind).map_err(|what| MemoryError::Impossible {
-                    error: error.clone(),
-                    place: at.clone(),
-                    what,
-                })?;
-                let key = Kind { depths: kind.depths, is_enough: kind.enough };
-                let times = known.times.entry(key).or_default();
-                *times = times.saturating_add(kind.times);
-            }
-            let place = (error, at);
-            if memory.places.contains_key(&place) {
-                let ((error, place), what) = (place, "it is there twice");
-                return Err(MemoryError::Impossible { error, place, what });
-            }
-            memory.places.insert(place, known);
-        }
-        Ok(memory)
+    /// What it knows something of: each error, by name, and its place.
+    pub fn places(&self) -> impl Iterator<Item = (&str, &str)> {
+        self.places.keys().map(|(error, place)| (error.as_str(), place.as_str()))
     }
 
     /// What it knows more than it did when it was as another one.
@@ -404,29 +220,9 @@ impl Memory {
     }
 }
 
-fn check(kind: &KindText) -> Result<(), &'static str> {
-    if kind.depths.is_empty() {
-        Err("nothing was tried")
-    } else if kind.depths.len() > ATTEMPTS_MAX {
-        Err("that is more attempts than are remembered")
-    } else if kind.depths.contains(&0) {
-        Err("it went back by 0 actions")
-    } else if kind.depths.iter().any(|&depth| depth > DEPTH_MAX) {
-        Err("that is further than is told apart")
-    } else if kind.times > 1 << 40 {
-        Err("that is more often than can be")
-    } else {
-        Ok(())
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    fn subject() -> Subject {
-        Subject { program: "p.obv".to_owned(), cell: "c.toml".to_owned() }
-    }
 
     const COSTS_S: [f64; 6] = [2.0, 4.0, 8.0, 12.0, 20.0, 30.0];
 
@@ -546,29 +342,6 @@ mod tests {
     }
 
     #[test]
-    fn a_memory_is_the_same_after_its_text() {
-        let mut memory = Memory::default();
-        memory.learn("jam", "sequence \"main\": advance insert", &[1, 2], true);
-        memory.learn("jam", "sequence \"main\": advance insert", &[1, 2], false);
-        memory.learn("empty", "elsewhere", &[40], true);
-        assert_eq!(Memory::from_text(&memory.to_text(&subject()), &subject()), Ok(memory));
-    }
-
-    #[test]
-    fn a_memory_of_another_program_or_cell_is_refused() {
-        let text = Memory::default().to_text(&subject());
-        for wanted in [
-            Subject { program: "q.obv".to_owned(), ..subject() },
-            Subject { cell: "d.toml".to_owned(), ..subject() },
-        ] {
-            let refused = Memory::from_text(&text, &wanted).unwrap_err();
-            assert_eq!(refused, MemoryError::Foreign { found: subject(), wanted });
-        }
-        let old = Memory::from_text("version = 1\n", &subject());
-        assert_eq!(old, Err(MemoryError::Version { found: 1 }), "which names no program");
-    }
-
-    #[test]
     fn what_two_learned_beside_each_other_is_kept_of_both() {
         let mut common = Memory::default();
         common.learn("jam", "here", &[1], true);
@@ -580,30 +353,6 @@ mod tests {
         kept.merge(&other.since(&common));
         assert_eq!((kept.known("jam", "here"), kept.known("jam", "there")), (3, 1));
         assert_eq!(one.since(&one), Memory::default());
-    }
-
-    #[test]
-    fn what_no_run_can_have_learned_is_refused() {
-        let text = |incident: &str| {
-            format!(
-                "version = 2\nprogram = \"p.obv\"\ncell = \"c.toml\"\n\
-                 [[place]]\nerror = \"jam\"\nat = \"here\"\nincident = [{incident}]\n"
-            )
-        };
-        let what = |incident: &str| {
-            Memory::from_text(&text(incident), &subject()).unwrap_err().to_string()
-        };
-        let of =
-            |depths: &str| what(&format!("{{ depths = [{depths}], enough = true, times = 1 }}"));
-        assert!(of("").contains("nothing was tried"));
-        assert!(of("1, 0").contains("0 actions"));
-        assert!(of("99").contains("further"));
-        assert!(of("-1").contains("no memory"));
-        assert!(of(&"1,".repeat(17)).contains("more attempts"));
-        let other = Memory::from_text("version = 7\n", &subject()).unwrap_err();
-        assert_eq!(other, MemoryError::Version { found: 7 });
-        let torn = &Memory::from_text(&text("{ depths = [1],")[..60], &subject());
-        assert!(matches!(torn, Err(MemoryError::Malformed { .. })));
     }
 
     #[test]

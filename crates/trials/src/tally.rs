@@ -71,7 +71,8 @@ pub struct Errors {
     pub count: u64,
     /// In how many assemblies; one may have several.
     pub assemblies: u64,
-    /// After how many the program went on without a person, in an assembly that did not end falsely.
+    /// After how many the program went on without a person, in an assembly that did not end
+    /// falsely.
     pub recovered: u64,
     /// How many of those were recovered by going back how many actions, at the last attempt.
     pub depths: BTreeMap<u32, u64>,

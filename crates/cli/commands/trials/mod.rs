@@ -127,7 +127,7 @@ fn campaign(arguments: &Arguments, path: &Path) -> std::result::Result<Part, Pro
     let memory = match plan.strategies.contains(&Strategy::Learned) {
         true => {
             let of = recovering::subject(&program, &file.name);
-            let memory = learned(arguments, &case, &of, jobs)?;
+            let memory = learned(arguments, &program, &case, &of, jobs)?;
             plan.memory_digest = Some(digest(memory.to_text(&of).as_bytes()));
             memory
         }
@@ -225,12 +225,13 @@ fn digest(bytes: &[u8]) -> String {
 /// What the strategy that learns goes by.
 fn learned(
     arguments: &Arguments,
+    program: &Program,
     case: &MachineCase<'_>,
     of: &Subject,
     jobs: usize,
 ) -> std::result::Result<Memory, Problem> {
     if let Some(path) = arguments.memory.as_deref().filter(|path| path.exists()) {
-        return recovering::remembered(path, of);
+        return recovering::remembered_of(path, program, of);
     }
     let mut progress = Progress::new("learning", 0, arguments.learn);
     let mut more = |_| progress.one_more();

@@ -55,12 +55,12 @@ obverse_codes::table! {
                [-170, 170], [-170, 170], [-170, 170], [-170, 170]]"
     Overlap "C0108" "two things in one place"
         why "Fixtures may touch, and what stands on one may lie on it; their bodies cannot be in \
-             one place, nor two holes of a fixture. An item is in no fixture, but for a hole that it \
-             fits, and in no other item; what a feeder has yet to bring is not there yet. At home \
-             the arm and its tool are in neither, but for the item in the gripper. It is looked at \
-             where things should stand, without their offsets, and items and the arm may be pressed \
-             into what they touch by half a millimetre. A body that is made of several parts \
-             belongs into one fixture."
+             one place, nor two holes of a fixture. An item is in no fixture, but for a hole that \
+             it fits, and in no other item; what a feeder has yet to bring is not there yet. At \
+             home the arm and its tool are in neither, but for the item in the gripper. It is \
+             looked at where things should stand, without their offsets, and items and the arm \
+             may be pressed into what they touch by half a millimetre. A body that is made of \
+             several parts belongs into one fixture."
         wrong "[arm]\nhome_rad = [0, -1.5, 1.5, 0, 0, 0]\n[[fixture]]\nname = \"table\"\nplace \
                = { xyz_mm = [0, 0, -20] }\nbody = [{ cuboid_mm = [900, 900, 40] }]\n\
                [[fixture]]\nname = \"nest\"\nplace = { xyz_mm = [300, 0, 0] }\nbody = [{ \

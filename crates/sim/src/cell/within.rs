@@ -1,8 +1,8 @@
 //! What is inside something else when the cell starts: items, and the arm at home.
 //!
-//! An item may lie on things, stand in a hole that it fits, and be in the gripper; what a feeder has
-//! yet to bring is in the way of no item. Looked at where things should be. Knows nothing of how two
-//! fixtures are to each other, and nothing of motion.
+//! An item may lie on things, stand in a hole that it fits, and be in the gripper; what a feeder
+//! has yet to bring is in the way of no item. Looked at where things should be. Knows nothing of
+//! how two fixtures are to each other, and nothing of motion.
 
 use super::build::Builder;
 use super::file::CellFile;
