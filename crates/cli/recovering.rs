@@ -4,7 +4,7 @@
 use crate::load::Program;
 use crate::problem::{Message, Problem};
 use crate::report::{self, Report};
-use crate::story::{self, Story};
+use crate::story::Story;
 use crate::{files, show, write};
 use obverse_bytecode::Module;
 use obverse_recovery::{

@@ -187,14 +187,13 @@ fn in_a_fork_it_is_answered_in_the_branch_whose_turn_it_is() {
           fork { move 40 mm up  move 40 mm down } and { set 3 high  wait 0.2 s  set 4 high }
         }
     ";
-    for tenth in 1..12 {
+    for tenth in 1..11 {
         let run = Case::new(source, 0.1 * f64::from(tenth)).run();
         assert_eq!(run.ending, Ending::Finished, "{tenth}");
         assert!(run.is_identical, "{tenth}");
         // Acts are watched at every instant of the branches' time.
         let began_s: Vec<f64> = run.incidents.iter().map(|incident| incident.began_s).collect();
-        assert_eq!(began_s.len(), 1, "{tenth}");
-        println!("{tenth} {began_s:?}");
+        assert_eq!(began_s, [0.1 * f64::from(tenth)]);
     }
 }
 
