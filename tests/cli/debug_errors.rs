@@ -123,6 +123,22 @@ fn strategies_and_memories_are_those_of_run() {
     bench.refuses(&["debug", PROGRAM, "--memory", PROGRAM], &["reversal_policy.obv"]);
 }
 
+/// A run that a person was called to is recorded; what going back would have made of it is tried
+/// from its tape.
+#[test]
+fn what_ended_a_run_is_recovered_from_in_a_what_if_from_its_tape() {
+    let bench = Bench::new("debug_tape_try");
+    bench.ends(1, &["run", PROGRAM, "--strategy", "stop", "--tape", "t.tape"]);
+    let commands = ["recover", "what-if", "recover", "c", "leave"];
+    let ran = session(&bench, &["--tape", "t.tape"], &commands);
+    let all = answers(&ran);
+    assert!(all[0]["why"].as_str().is_some_and(|why| why.contains("try what would have been")));
+    assert_eq!(halts(&ran)[2..4], ["done", "finished"].map(|halt| json!(halt)));
+    assert!(story(&ran).iter().any(|line| line["step"] == "recovered"), "{}", ran.stdout);
+    assert_eq!(all[4]["position"], all[0]["position"], "the recording is as it was");
+    bench.refuses(&["debug", "--tape", "t.tape", "--memory", "m.toml"], &["no `--memory`"]);
+}
+
 /// What is tried recovers by itself, from the past too, and the run knows nothing of it.
 #[test]
 fn a_what_if_recovers_and_teaches_nothing() {

@@ -111,9 +111,9 @@ fn attached(attach: &Attach) -> std::result::Result<Loaded, Problem> {
         Err(problem) if named.is_any() => return Err(problem),
         start => start.ok().map(Box::new),
     };
-    let recording = Box::new(opened.file.recording);
-    let program = opened.program.verified;
-    Ok(Loaded { program, begin: Begin::Recorded(recording, start), paths, notes })
+    let seed = opened.file.head.seed;
+    let begin = Begin::Recorded(Box::new(opened.file.recording), start);
+    Ok(Loaded { program: opened.program.verified, begin, seed, paths, notes })
 }
 
 /// The source files of a program that are on disk.
@@ -138,7 +138,8 @@ fn launched(launch: &Launch) -> std::result::Result<Loaded, Problem> {
     let mut notes: Vec<String> = notes;
     let after = after::words(launch.after.as_deref());
     notes.push(format!("{} in {place}, seed {}{after}", launch.program.display(), launch.seed));
-    Ok(Loaded { program: program.verified, begin: Begin::Live(Box::new(cell)), paths, notes })
+    let begin = Begin::Live(Box::new(cell));
+    Ok(Loaded { program: program.verified, begin, seed: launch.seed, paths, notes })
 }
 
 fn words(problem: &Problem) -> String {

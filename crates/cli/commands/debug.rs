@@ -77,11 +77,14 @@ fn live(arguments: &Arguments, file: &Path) -> Result {
         let (name, after) = (file.display(), after::words(arguments.after.after.as_deref()));
         write::line(&format!("{name} in {}, seed {}{after}", cell_file.name, arguments.seed));
     }
-    converse(arguments, run.simulated(None), Some(&kept), lines)
+    converse(arguments, run.simulated(None), (arguments.seed, Some(&kept)), lines)
 }
 
 /// A run as its tape tells it. What would have been can be tried where its workcell is to be had.
 fn post_mortem(arguments: &Arguments, tape: &Path, file: Option<&Path>) -> Result {
+    if arguments.policy.memory.is_some() {
+        return Err(Problem::new("a tape is only looked at, and teaches nothing: no `--memory`"));
+    }
     let opened = taping::open(tape)?;
     if let Some(file) = file {
         let program = load::program_with(file, &arguments.parameters.parameters)?;
@@ -115,7 +118,7 @@ fn post_mortem(arguments: &Arguments, tape: &Path, file: Option<&Path>) -> Resul
         write::line(&opened.ending());
         opened.lacks(lacks.as_ref()).iter().for_each(|text| write::line(text));
     }
-    converse(arguments, run.simulated(start), None, lines)
+    converse(arguments, run.simulated(start), (head.seed, None), lines)
 }
 
 /// The first Ctrl-C halts the command under way, between instructions; where it has found nothing
@@ -131,7 +134,7 @@ fn interrupt(session: &Session<'_, Sim>) -> std::result::Result<(), Problem> {
 fn converse(
     arguments: &Arguments,
     run: Run<'_, Sim>,
-    kept: Option<&Kept>,
+    (seed, kept): (u64, Option<&Kept>),
     mut lines: Lines,
 ) -> Result {
     let mut session = Session::over(run);
@@ -142,7 +145,7 @@ fn converse(
         true => Box::new(Report::new(module)),
         false => Box::new(Story::new(module)),
     });
-    let policy = Policy { strategy: arguments.policy.strategy, ..Policy::declared(arguments.seed) };
+    let policy = Policy { strategy: arguments.policy.strategy, ..Policy::declared(seed) };
     session.recover_by(policy, kept.map(Kept::memory).unwrap_or_default());
     let mut front = Front::over(session, Face::of(arguments.json));
     let failed = front.converse(&mut lines)?;

@@ -69,9 +69,7 @@ impl<'a, 's, 'p> Debuggee<'a, 's, 'p> {
         let mut session = Session::over(run(loaded)?);
         let told = Told::default();
         session.tell_to(Box::new(Story { module: session.module(), told: told.clone() }));
-        if let Wanted::Launch(launch) = wanted {
-            session.recover_by(Policy::declared(launch.seed), Memory::default());
-        }
+        session.recover_by(Policy::declared(loaded.seed), Memory::default());
         server.inbox.ring(session.interrupter());
         Ok(Self {
             server,

@@ -26,6 +26,8 @@ pub struct Loaded {
     pub program: Verified,
     /// Where the session begins.
     pub begin: Begin,
+    /// What all chance in the run follows from.
+    pub seed: u64,
     /// The path of each source file of the module; none of one that is in no folder.
     pub paths: Vec<Option<PathBuf>>,
     /// What the user is to be told about it, warnings for one.
