@@ -23,7 +23,7 @@ code=$scratch/code-server-$version
 # has the same version; and only those that are needed here are built.
 install_editor() {
   cd "$scratch"
-  npm pack --silent "code-server@$version"
+  npm pack --silent "code-server@$version" > /dev/null
   tar xzf "code-server-$version.tgz"
   rm "code-server-$version.tgz"
   cd package
