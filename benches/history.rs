@@ -92,9 +92,9 @@ fn held_mb() -> f64 {
     pages.unwrap_or(f64::NAN) * 4096.0 / 1e6
 }
 
-/// What a step back takes, live: as it came, and the worst that recurs. A step that is slow in every
-/// one of some runs is slow by itself; one that is slow in one of them was interrupted, as the clock
-/// is that is asked without any step.
+/// What a step back takes, live: as it came, and the worst that recurs. A step that is slow in
+/// every one of some runs is slow by itself; one that is slow in one of them was interrupted, as
+/// the clock is that is asked without any step.
 #[expect(clippy::print_stdout, reason = "a benchmark reports on standard output")]
 fn tell_steps(program: &Verified) {
     for (grain, name, count) in [
