@@ -7,7 +7,7 @@
 #
 # Needs node 20 with npm, its registry, a C++ compiler for modules of the editor that are built here,
 # and chromium; CHROMIUM and OBVERSE name the browser and the command, where they are elsewhere.
-# Everything is put into the target folder: 700 MB, in some minutes, once. Tells a line for what is
+# Everything is put into the target folder: 400 MB, in two minutes, once. Tells a line for what is
 # seen, and leaves pictures beside it. Ends with 0 if all is seen, 1 if something is not, and 2 if the
 # editor cannot be had here. It is no part of `cargo test`.
 set -eu
@@ -23,7 +23,7 @@ code=$scratch/code-server-$version
 # has the same version; and only those that are needed here are built.
 install_editor() {
   cd "$scratch"
-  npm pack --silent "code-server@$version"
+  npm pack --silent "code-server@$version" > /dev/null
   tar xzf "code-server-$version.tgz"
   rm "code-server-$version.tgz"
   cd package
