@@ -353,3 +353,27 @@ fn a_full_standard_output_is_an_error() {
     let said = String::from_utf8_lossy(&output.stderr);
     assert!(said.contains("standard output cannot be written"), "{said}");
 }
+
+/// What cannot be built is refused before anything moves, by every command that reads it.
+#[test]
+fn a_workcell_with_two_things_in_one_place_is_refused_by_check_and_run() {
+    let bench = Bench::new("wrong_geometry");
+    let cell = String::from_utf8(bench.read("peg_in_hole.toml")).expect("text");
+    let wall = |xyz: &str| {
+        format!(
+            "{cell}\n[[fixture]]\nname = \"wall\"\nplace = {{ xyz_mm = {xyz} }}\n\
+             body = [{{ cuboid_mm = [30, 30, 30] }}]\n"
+        )
+    };
+    // In the shoulder of the arm; and where nothing is.
+    bench.write("shoulder.toml", wall("[0, 0, 60]"));
+    bench.write("aside.toml", wall("[0, 700, 600]"));
+    let with = |command, file| [command, "reversal_policy.obv", "--cell", file];
+    for command in ["check", "run", "trials"] {
+        let words = ["C0108", "shoulder.toml:", "at home the shoulder of the arm", "`wall`"];
+        bench.refuses(&with(command, "shoulder.toml"), &words);
+        if command != "trials" {
+            assert!(bench.run(&with(command, "aside.toml")).code < 2, "{command}");
+        }
+    }
+}

@@ -1,7 +1,7 @@
 //! What a move meets going back where the program says how to go back: settings for that, what
 //! replaces a block, and blocks that keep their order.
 
-use crate::support::{CELL, Found, reasons, with_wall};
+use crate::support::{CELL, Found, bodiless, reasons, with_wall};
 use obverse_preflight::Reason;
 use obverse_workcell::FaultKind;
 
@@ -161,7 +161,8 @@ body = [{ cuboid_mm = [200, 600, 170] }]
 item part { keyframe above = [0, 0, -100] mm }
 sequence main { move to part.above; move LENGTH -y in base }";
     let reason = |length| {
-        let found = Found::of(&format!("{CELL}{table}"), &program.replace("LENGTH", length));
+        let cell = format!("{}{table}", bodiless());
+        let found = Found::of(&cell, &program.replace("LENGTH", length));
         found.forward(1).verdict.reason
     };
     assert_eq!(reason("50 mm"), Reason::Fine);

@@ -43,11 +43,20 @@ place = { xyz_mm = [450, -150, 60], rotation_vector_deg = [180, 0, 0] }
 grasp = { xyz_mm = [0, 0, 1000] }
 "#;
 
-/// The cell with a block at a place, of a height, in millimetres.
+/// The cell whose part has no body, so that something else may be where it lies.
+pub(crate) fn bodiless() -> String {
+    let body = "body = [{ cuboid_mm = [20, 20, 60], at = { xyz_mm = [0, 0, 35] } }]\n";
+    assert!(CELL.contains(body), "the part has one");
+    CELL.replace(body, "")
+}
+
+/// The cell with a block at a place, of a height, in millimetres; where the part lies, that has no
+/// body.
 pub(crate) fn with_wall(x: i32, y: i32, height: i32) -> String {
     let middle = height / 2;
+    let cell = if (x, y) == (450, 150) { bodiless() } else { CELL.to_owned() };
     format!(
-        "{CELL}
+        "{cell}
 [[fixture]]
 name = \"wall\"
 place = {{ xyz_mm = [{x}, {y}, {middle}] }}

@@ -293,7 +293,8 @@ fn holes_do_not_run_into_each_other() {
     let holes = |second: &str| {
         format!(
             "[[fixture]]\nname = \"f\"\nplace = {{ xyz_mm = [400, 0, 0] }}\n\
-             body = [{{ cuboid_mm = [50, 50, 40], at = {{ xyz_mm = [0, 0, 20] }} }}]\nhole = [\n{{ diameter_mm = 10, depth_mm = 30 }},\n\
+             body = [{{ cuboid_mm = [50, 50, 40], at = {{ xyz_mm = [0, 0, 20] }} }}]\n\
+             hole = [\n{{ diameter_mm = 10, depth_mm = 30 }},\n\
              {{ mouth = {{ {second} }}, diameter_mm = 8, depth_mm = 22 }},\n]"
         )
     };
