@@ -24,6 +24,8 @@ pub const ATTEMPTS_MAX: usize = 16;
 /// two things: a search that goes on may come upon what its first point has missed.
 const CURIOSITY: f64 = 0.3;
 const FEW: f64 = 5.0;
+/// How often a depth is tried in one incident before it is no longer tried for that.
+const CURIOUS_TIMES: usize = 2;
 /// How many incidents must be known in which going back as far as can be was in vain, before it is
 /// believed that going back may not help.
 const IN_VAIN_MIN: u64 = 5;
@@ -157,11 +159,13 @@ impl Memory {
             belief.fail(depth);
         }
         let slack = |depth: usize| {
-            let known = match tried {
+            let is_enough = tried.iter().filter(|tried| **tried == depth).count() >= CURIOUS_TIMES;
+            let times = match tried {
                 [] => self.tried(error, place, depth),
+                _ if known == 0 || is_enough => return 1.0,
                 _ => self.tried_later(error, place, depth),
             };
-            1.0 + CURIOSITY * FEW / (FEW + known)
+            1.0 + CURIOSITY * FEW / (FEW + times)
         };
         let best = belief.best(costs, slack);
         let furthest = costs.by_depth_s.len().min(DEPTH_MAX);
