@@ -217,8 +217,8 @@ impl<'m> Trail<'m> {
     }
 
     /// What it takes to go back so many actions and to come again, in seconds and in metres: twice
-    /// what they took, but for waits, and for motions that ended where they began. None if there are
-    /// not so many.
+    /// what they took, but for waits, and for motions that ended where they began. None if there
+    /// are not so many.
     pub(crate) fn there_and_back(
         &self,
         actions: usize,

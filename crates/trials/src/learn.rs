@@ -4,9 +4,9 @@
 //! A memory that went on growing through the campaign would make each assembly depend on all
 //! before it, and so a shard on all other shards. So the phase comes first and is the same in
 //! every shard. It goes in epochs that grow by a quarter of all before: the runs of an epoch go by
-//! what was learned from all epochs before, and what they teach is added in the order of the runs, so that all cores can
-//! work and the memory does not depend on how many there are. Every assembly that counts is then
-//! judged by a memory that knows nothing of it.
+//! what was learned from all epochs before, and what they teach is added in the order of the runs,
+//! so that all cores can work and the memory does not depend on how many there are. Every assembly
+//! that counts is then judged by a memory that knows nothing of it.
 
 use crate::case::{Case, Stand};
 use crate::plan::{Purpose, seed_of};
