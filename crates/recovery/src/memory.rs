@@ -91,27 +91,20 @@ impl Memory {
         known.map_or(0, |known| known.times.values().sum())
     }
 
-    /// How many attempts are known that say something of a depth: those of it, and those that went
-    /// further in vain, as it would have been.
-    fn tried(&self, error: &str, place: &str, depth: usize) -> f64 {
+    /// How many attempts are known that say something of a depth, from one of their number on:
+    /// those of it, and those that went further in vain, as it would have been.
+    fn tried(&self, error: &str, place: &str, depth: usize, from: usize) -> f64 {
         let Some(known) = self.places.get(&(error.to_owned(), place.to_owned())) else {
             return 0.0;
         };
         let in_kind = |kind: &Kind| {
             let failed = kind.depths.len() - usize::from(kind.is_enough);
-            let (failed, helped) = kind.depths.split_at(failed);
-            let in_vain = failed.iter().filter(|tried| **tried >= depth).count();
-            in_vain + helped.iter().filter(|tried| **tried == depth).count()
+            let says = |(number, tried): (usize, &usize)| match number < failed {
+                true => *tried >= depth,
+                false => *tried == depth,
+            };
+            kind.depths.iter().enumerate().skip(from).filter(|it| says(*it)).count()
         };
-        known.times.iter().map(|(kind, times)| in_kind(kind) as f64 * *times as f64).sum()
-    }
-
-    /// How many attempts of a depth are known that others had gone before in vain.
-    fn tried_later(&self, error: &str, place: &str, depth: usize) -> f64 {
-        let Some(known) = self.places.get(&(error.to_owned(), place.to_owned())) else {
-            return 0.0;
-        };
-        let in_kind = |kind: &Kind| kind.depths.iter().skip(1).filter(|&&d| d == depth).count();
         known.times.iter().map(|(kind, times)| in_kind(kind) as f64 * *times as f64).sum()
     }
 
@@ -160,11 +153,10 @@ impl Memory {
         }
         let slack = |depth: usize| {
             let is_enough = tried.iter().filter(|tried| **tried == depth).count() >= CURIOUS_TIMES;
-            let times = match tried {
-                [] => self.tried(error, place, depth),
-                _ if known == 0 || is_enough => return 1.0,
-                _ => self.tried_later(error, place, depth),
-            };
+            if !tried.is_empty() && (known == 0 || is_enough) {
+                return 1.0;
+            }
+            let times = self.tried(error, place, depth, usize::from(!tried.is_empty()));
             1.0 + CURIOSITY * FEW / (FEW + times)
         };
         let best = belief.best(costs, slack);

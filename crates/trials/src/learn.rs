@@ -67,7 +67,7 @@ mod tests {
         let lengths = |runs| epochs(runs).map(|epoch| epoch.end - epoch.start).collect::<Vec<_>>();
         assert_eq!(lengths(0), Vec::<u64>::new());
         assert_eq!(lengths(5), [5]);
-        assert_eq!(lengths(100), [32, 32, 36]);
+        assert_eq!(lengths(100), [32, 32, 32, 4]);
         assert_eq!(lengths(256), [32, 32, 32, 32, 32, 40, 50, 6]);
     }
 }
