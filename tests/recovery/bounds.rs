@@ -1,7 +1,7 @@
 //! What bounds a recovery over the whole of a run, wherever the program goes on.
 
 use crate::{Case, NEVER_S, Run};
-use obverse_recovery::{Ending, GiveUp, Outcome};
+use obverse_recovery::{Ending, GiveUp, Incident, Outcome};
 use obverse_workcell::DigitalIo;
 
 fn outcomes(run: &Run) -> Vec<Outcome> {
@@ -52,7 +52,7 @@ fn nothing_goes_back_over_what_follows_a_recovery_that_was_given_up() {
         sequence main { move 10 mm up  throw late  move 10 mm down  set 4 high  throw later }
     ";
     let run = Case::new(source, NEVER_S).run();
-    let depths: Vec<Vec<usize>> = run.incidents.iter().map(|incident| incident.depths()).collect();
+    let depths: Vec<Vec<usize>> = run.incidents.iter().map(Incident::depths).collect();
     assert_eq!(depths, [vec![1], vec![3]], "`set 3 high`, the move down and `set 4 high`");
     assert!(run.sim.output(3) && run.is_identical);
 }
