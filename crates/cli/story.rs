@@ -211,6 +211,9 @@ fn forward_outcome(module: &Module, event: &Event, cell: &dyn Workcell) -> Optio
         }
         Instr::Checkpoint { .. } => "may be gone back to".to_owned(),
         Instr::Barrier { .. } | Instr::Irreversible { .. } => "no way back from here".to_owned(),
+        // It was set aside, or is raised anew: who raised it has been told.
+        Instr::ErrorClear { .. } if is_set_aside(module, event.pc) => return None,
+        Instr::ErrorRaise { error } if is_raised_anew(module, event.pc, error) => return None,
         Instr::ErrorRaise { error } => {
             let error = &module.errors[error.index()];
             let severity = match error.severity {
@@ -252,6 +255,20 @@ fn waited_for(bit: u16, level: Level, cell: &dyn Workcell) -> String {
     } else {
         format!("input {bit} still {}: time is up", level_word(!level.is_high()))
     }
+}
+
+/// Whether an error is pending no more only while something else is done, as a local remembers.
+fn is_set_aside(module: &Module, pc: u32) -> bool {
+    let before = |by: u32| module.code.get(pc.checked_sub(by)? as usize);
+    matches!(
+        (before(2), before(1)),
+        (Some(Instr::PushLocal { .. }), Some(Instr::JumpUnless { .. }))
+    )
+}
+
+fn is_raised_anew(module: &Module, pc: u32, error: ErrorId) -> bool {
+    let before = pc.checked_sub(1).and_then(|before| module.code.get(before as usize));
+    before == Some(&Instr::ErrorClear { error })
 }
 
 fn is_followed_by_raise(module: &Module, pc: u32, error: ErrorId) -> bool {

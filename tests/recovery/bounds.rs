@@ -53,8 +53,35 @@ fn nothing_goes_back_over_what_follows_a_recovery_that_was_given_up() {
     ";
     let run = Case::new(source, NEVER_S).run();
     let depths: Vec<Vec<usize>> = run.incidents.iter().map(Incident::depths).collect();
-    assert_eq!(depths, [vec![1], vec![3]], "`set 3 high`, the move down and `set 4 high`");
+    assert_eq!(depths, [vec![1], vec![2]], "the move down and `set 4 high`, and not `set 3 high`");
     assert!(run.sim.output(3) && run.is_identical);
+}
+
+#[test]
+fn nor_where_the_program_begins_something_anew_and_another_error_comes_up_there() {
+    // `away` is run, and then `other` asks to go back further than what has begun since.
+    let depths = |recovery: &str, then: &str| {
+        let source = format!(
+            "error late {{ {recovery} away  then {then} }}
+            error other {{ recover by reversing 20 actions  give up after 1 times }}
+            sequence away {{ set 2 high  move 50 mm up }}
+            sequence main {{
+              set 5 high
+              if input 0 {{ throw other }}
+              throw late
+            }}"
+        );
+        // The input comes high while `away` moves.
+        let run = Case::new(&source, 0.3).run();
+        assert!(run.sim.output(2), "{recovery} {then}: `away` stays done");
+        run.incidents.last().unwrap().depths()
+    };
+    let reversing = "recover by reversing 1 action  give up after 1 times  otherwise using";
+    for recovery in ["recover using", reversing] {
+        for then in ["return to sequence", "restart program"] {
+            assert_eq!(depths(recovery, then), [1], "{recovery} {then}");
+        }
+    }
 }
 
 #[test]

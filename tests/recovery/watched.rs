@@ -225,3 +225,46 @@ fn what_another_error_takes_back_is_noticed_again_if_it_holds_still() {
     assert_eq!(ceased.steps.told, ["Fault", "Back", "Again", "Recovered"]);
     assert!(!ceased.sim.output(7));
 }
+
+#[test]
+fn what_was_noticed_before_is_not_taken_for_an_error_of_another_recovery() {
+    let policies = [
+        "recover using other  then continue",
+        "recover by reversing 1 action  give up after 1 times  otherwise using other  then continue",
+    ];
+    for policy in policies {
+        let source = format!(
+            "error seen {{ on input 0 high  respond after current sequence  recover using help
+                          then continue }}
+            error late {{ {policy} }}
+            sequence help {{ set 7 high }}
+            sequence other {{ move 5 mm up  set 6 high }}
+            sequence main {{ call inner  wait 1 s }}
+            sequence inner {{ wait 1 s  if not input 1 {{ throw late }}  set 5 high }}"
+        );
+        let run = Case::new(&source, 0.5).run();
+        assert_eq!(run.ending, Ending::Finished, "{policy}");
+        for output in [5, 6, 7] {
+            assert!(run.sim.output(output), "{policy}: output {output}");
+        }
+        assert!(run.is_identical, "{policy}");
+    }
+}
+
+#[test]
+fn how_far_a_wait_for_an_input_was_is_said_of_all_of_it() {
+    for (respond, expected) in [("at once", 0.25), ("after current action", 0.25)] {
+        let source = format!(
+            "error seen {{ on input 0 high  respond {respond}  then stop }}
+            sequence main {{ wait until input 1 high for up to 2 s else {{ }} }}"
+        );
+        let program = verify(module(&source)).unwrap();
+        let mut sim = Sim::new(&cell(0.5), 0);
+        let mut machine = Machine::new(&program, &sim).unwrap();
+        let stop = machine.run(Direction::Forward, Limits::NONE, &mut sim, &mut ());
+        let Stop::Fault { fault: Fault::Watched { fraction, .. }, .. } = stop else {
+            panic!("{respond}: {stop:?}")
+        };
+        assert!((fraction - expected).abs() < 0.01, "{respond}: {fraction}");
+    }
+}

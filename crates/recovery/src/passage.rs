@@ -12,6 +12,8 @@ pub(crate) struct Passage {
     pub(crate) depth: usize,
     /// Whether the run has yet to come there again: it began anew before that place.
     pub(crate) is_ahead: bool,
+    /// Whether a call that was made from there is yet to return, over which nothing goes back.
+    pub(crate) is_answering: bool,
 }
 
 impl Passage {
@@ -24,6 +26,14 @@ impl Passage {
         }
         !self.is_ahead && depth <= self.depth
     }
+
+    /// A call has returned to so many calls under way. Whether it is the one that was made from
+    /// there.
+    pub(crate) fn is_answered_with(&mut self, depth: usize) -> bool {
+        let is_answered = self.is_answering && depth <= self.depth;
+        self.is_answering &= !is_answered;
+        is_answered
+    }
 }
 
 #[cfg(test)]
@@ -32,7 +42,7 @@ mod tests {
 
     #[test]
     fn another_action_as_deep_or_less_is_past_it_and_what_is_called_from_there_is_not() {
-        let mut passage = Passage { entry: 7, depth: 2, is_ahead: false };
+        let mut passage = Passage { entry: 7, depth: 2, is_ahead: false, is_answering: false };
         assert!(!passage.is_passed_with(9, 3), "in a call");
         assert!(!passage.is_passed_with(7, 2), "the same again");
         assert!(passage.is_passed_with(9, 2));
@@ -41,9 +51,17 @@ mod tests {
 
     #[test]
     fn what_lies_ahead_again_is_passed_once_the_run_has_come_there() {
-        let mut passage = Passage { entry: 7, depth: 2, is_ahead: true };
+        let mut passage = Passage { entry: 7, depth: 2, is_ahead: true, is_answering: false };
         assert!(!passage.is_passed_with(5, 2), "the sequence begins anew");
         assert!(!passage.is_passed_with(7, 2));
         assert!(passage.is_passed_with(9, 2));
+    }
+
+    #[test]
+    fn it_is_answered_by_the_first_return_to_it_and_by_no_other() {
+        let mut passage = Passage { entry: 7, depth: 2, is_ahead: false, is_answering: true };
+        assert!(!passage.is_answered_with(3), "within the call");
+        assert!(passage.is_answered_with(2));
+        assert!(!passage.is_answered_with(2), "another call");
     }
 }

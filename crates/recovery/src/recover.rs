@@ -14,7 +14,7 @@ use crate::recovering::{Advance, GivenUp, Phase, Recovering};
 use crate::strategy::{Bounds, Strategy};
 use crate::tell::{Operator, Step, Teller};
 use crate::trail::Trail;
-use obverse_bytecode::{Continuation, Module, Otherwise, Reversal};
+use obverse_bytecode::{self as bytecode, Continuation, Module, Otherwise, Reversal};
 use obverse_isa::ErrorId;
 use obverse_vm::{Alteration, Direction, Event, Limits, Machine, Observer, Stop};
 use obverse_workcell::{Fault, Workcell};
@@ -363,12 +363,21 @@ impl<'p, C: Workcell> Run<'_, 'p, '_, C> {
         let declared = self.declared(incident);
         let begins_anew =
             matches!(declared.continuation, Continuation::Sequence | Continuation::Program);
-        if begins_anew || reversal(declared).is_some() {
+        let is_bounded = begins_anew || reversal(declared).is_some();
+        if is_bounded {
             self.at.trail.begin_anew();
         }
+        let is_answering = is_bounded
+            && (matches!(declared.recovery, bytecode::Recovery::Using(_))
+                || matches!(declared.otherwise, Otherwise::Using(_)));
         let depth = self.driven.machine().state().frames().len();
         let Incident { error, pc, entry, number, .. } = *incident;
-        let passage = self.at.trail.await_passage(Passage { entry, depth, is_ahead: begins_anew });
+        let passage = self.at.trail.await_passage(Passage {
+            entry,
+            depth,
+            is_ahead: begins_anew,
+            is_answering,
+        });
         self.at.given_up.push(GivenUp { error, pc, entry, number, passage });
     }
 

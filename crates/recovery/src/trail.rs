@@ -309,7 +309,15 @@ impl<'m> Trail<'m> {
             Instr::Checkpoint { checkpoint } => {
                 self.posts.push((began, Post::Checkpoint(checkpoint)));
             }
-            Instr::Return {} => self.end_call(event),
+            Instr::Return {} => {
+                self.end_call(event);
+                let passages = self.awaited.iter_mut();
+                let answered =
+                    passages.filter_map(|(_, it)| it.is_answered_with(event.frames).then_some(()));
+                if answered.count() > 0 {
+                    self.begin_anew();
+                }
+            }
             Instr::Call { function, .. } if self.is_transparent(function) => {
                 let depth = event.frames.saturating_sub(1);
                 let post = Post::Sequence { depth, branches: event.branches.clone() };

@@ -138,7 +138,7 @@ impl Lower<'_> {
         if is_set_aside {
             self.push(Instr::ErrorClear { error });
         }
-        let failed = using.map_or(Vec::new(), |function| self.recover_using(function));
+        let failed = using.map_or(Vec::new(), |function| self.recover_using(error, function));
         if !is_set_aside && !matches!(then, Continuation::Program | Continuation::Stop) {
             self.push(Instr::ErrorClear { error });
         }
@@ -199,9 +199,57 @@ impl Lower<'_> {
         given_up
     }
 
+    /// The local of this frame that says whether an error that was set aside was pending.
+    fn pending(&mut self, error: ErrorId) -> LocalId {
+        let known = self.frame.aside.iter().find(|(known, _)| *known == error);
+        if let Some((_, local)) = known {
+            return *local;
+        }
+        let local = self.hidden("pending", Type::Bool);
+        self.frame.aside.push((error, local));
+        local
+    }
+
+    /// From here on, errors that are pending are not so: the locals that say which were.
+    pub(super) fn set_aside(&mut self, errors: &[ErrorId]) -> Vec<(ErrorId, LocalId)> {
+        let mut aside = Vec::new();
+        for &error in errors {
+            let local = self.pending(error);
+            self.push(Instr::PushRaised { error });
+            self.push(Instr::StoreLocal { prefix: PREFIX, local });
+            self.push(Instr::PushLocal { local });
+            let was_not = self.code.jump(|target| Instr::JumpUnless { prefix: PREFIX, target });
+            self.push(Instr::ErrorClear { error });
+            self.join_one(was_not);
+            aside.push((error, local));
+        }
+        aside
+    }
+
+    /// What was set aside is pending again.
+    pub(super) fn take_up(&mut self, aside: &[(ErrorId, LocalId)]) {
+        for &(error, local) in aside {
+            self.push(Instr::PushLocal { local });
+            let was_not = self.code.jump(|target| Instr::JumpUnless { prefix: PREFIX, target });
+            self.pend(error);
+            self.join_one(was_not);
+        }
+    }
+
+    /// What may have been noticed before an error is recovered from, and is none of its sequence.
+    fn noticed_before(&self, error: ErrorId, function: FunctionId) -> Vec<ErrorId> {
+        let mut raised = self.effects.raised_within(function);
+        let is_noted = |other: ErrorId| self.effects.response(other) == Response::Ignore;
+        raised.retain(|&other| {
+            other != error && !self.declared(other).watches.is_empty() && !is_noted(other)
+        });
+        raised
+    }
+
     /// Run the sequence of a recovery; the jumps where an error in it gives the recovery up.
-    fn recover_using(&mut self, function: FunctionId) -> Vec<Mark> {
+    fn recover_using(&mut self, error: ErrorId, function: FunctionId) -> Vec<Mark> {
         let mut failed = Vec::new();
+        let aside = self.set_aside(&self.noticed_before(error, function));
         if let Some(recovering) = self.globals.recovering {
             self.set_flag(recovering, true);
         }
@@ -209,6 +257,7 @@ impl Lower<'_> {
         if let Some(recovering) = self.globals.recovering {
             self.set_flag(recovering, false);
         }
+        self.take_up(&aside);
         if let (true, Some(leaving)) = (self.effects.leaves(function), self.globals.leaving) {
             self.push(Instr::PushGlobal { global: leaving });
             failed.push(self.code.jump(|target| Instr::JumpIf { prefix: PREFIX, target }));
@@ -217,8 +266,14 @@ impl Lower<'_> {
             if self.effects.response(error) == Response::Ignore {
                 self.clear_if_raised(error);
             } else {
+                let was = aside.iter().find(|(other, _)| *other == error).map(|(_, local)| *local);
+                let next = was.map(|local| {
+                    self.push(Instr::PushLocal { local });
+                    self.code.jump(|target| Instr::JumpIf { prefix: PREFIX, target })
+                });
                 self.push(Instr::PushRaised { error });
                 failed.push(self.code.jump(|target| Instr::JumpIf { prefix: PREFIX, target }));
+                next.into_iter().for_each(|next| self.join_one(next));
             }
         }
         failed

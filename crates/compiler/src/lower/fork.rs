@@ -96,9 +96,10 @@ impl Lower<'_> {
     /// A branch up to its end; the ways that lead there from within it.
     fn fork_branch(&mut self, branch: &Block, way: Option<LocalId>) -> Vec<Way> {
         // Another task may come between: each branch has a local of its own for what is left in it.
-        let around = (self.frame.way.take(), self.frame.again.take());
+        let frame = &mut self.frame;
+        let around = (frame.way.take(), frame.again.take(), std::mem::take(&mut frame.aside));
         let scope = self.scoped(Scope::Branch(way, Vec::new()), branch);
-        (self.frame.way, self.frame.again) = around;
+        (self.frame.way, self.frame.again, self.frame.aside) = around;
         let Some(Scope::Branch(_, ways)) = scope else { return Vec::new() };
         let (marks, ways): (Vec<Mark>, Vec<Way>) = ways.into_iter().unzip();
         self.at(branch.end, None);

@@ -4,7 +4,7 @@ use super::Lower;
 use super::leave::Way;
 use crate::tree::Layout;
 use obverse_bytecode::Mark;
-use obverse_isa::{Instr, Label, LocalId, ReasonId, Setting, Type};
+use obverse_isa::{ErrorId, Instr, Label, LocalId, ReasonId, Setting, Type};
 use obverse_syntax::span::Span;
 
 /// What is known of the function in hand.
@@ -37,6 +37,8 @@ pub(super) struct Frame<'p> {
     /// How often the action in hand has been done again in a row, if any can; branches of a fork
     /// have one each.
     pub(super) again: Option<LocalId>,
+    /// Whether errors were pending that are not so while another is recovered from, by error.
+    pub(super) aside: Vec<(ErrorId, LocalId)>,
     /// How often it has begun again, if it can.
     pub(super) rounds: Option<LocalId>,
     /// Which way leads out of a block with a reverse of its own, if any does.

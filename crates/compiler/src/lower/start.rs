@@ -68,29 +68,14 @@ impl<'p> Lower<'p> {
         if let (true, Some(leaving)) = (self.effects.leaves(function), self.globals.leaving) {
             self.set_flag(leaving, false);
         }
-        let mut pending = Vec::new();
-        for error in self.effects.raised_within(function) {
-            let local = self.hidden("pending", Type::Bool);
-            self.push(Instr::PushRaised { error });
-            let is_not = self.code.jump(|target| Instr::JumpUnless { prefix: PREFIX, target });
-            self.push_bool(true);
-            self.push(Instr::StoreLocal { prefix: PREFIX, local });
-            self.push(Instr::ErrorClear { error });
-            self.join_one(is_not);
-            pending.push((error, local));
-        }
+        let pending = self.set_aside(&self.effects.raised_within(function));
         self.push(Instr::Call { prefix: PREFIX, function });
         for &error in self.effects.left_by(function) {
             if self.effects.response(error) == Response::Ignore {
                 self.clear_if_raised(error);
             }
         }
-        for (error, local) in pending {
-            self.push(Instr::PushLocal { local });
-            let was_not = self.code.jump(|target| Instr::JumpUnless { prefix: PREFIX, target });
-            self.pend(error);
-            self.join_one(was_not);
-        }
+        self.take_up(&pending);
     }
 
     /// Begin the program again if that is asked for and has not been done too often.

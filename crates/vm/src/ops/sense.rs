@@ -55,21 +55,26 @@ fn wait_for(acts: &mut Acts<'_>, op: op::WaitInput) -> Result<bool, Failure> {
             return Ok(true);
         }
         let left_s = longest_s - poll as f64 * POLL_S;
-        let waited = acts.wait(left_s.clamp(0.0, POLL_S));
-        waited.map_err(|failure| of_all(failure, poll, polls))?;
+        wait_between(acts, left_s.clamp(0.0, POLL_S), poll, polls)?;
     }
     Ok(acts.cell.input(op.bit.0)? == op.level.is_high())
 }
 
-/// What happened between two looks, after a fraction of all that is waited for at the most.
-fn of_all(failure: Failure, poll: u64, polls: u64) -> Failure {
-    match failure {
+/// Wait between two looks; what comes to hold does so after a fraction of all that is waited for at
+/// the most.
+fn wait_between(acts: &mut Acts<'_>, wait_s: f64, poll: u64, polls: u64) -> Result<(), Failure> {
+    let of_all = |fraction: f64| (poll as f64 + fraction) / polls as f64;
+    let has_noticed = acts.done.noticed.is_some();
+    let waited = acts.wait(wait_s);
+    if let (false, Some((_, fraction))) = (has_noticed, &mut acts.done.noticed) {
+        *fraction = of_all(*fraction);
+    }
+    waited.map_err(|failure| match failure {
         Failure::Fault(Fault::Watched { watch, fraction }) => {
-            let fraction = (poll as f64 + fraction) / polls as f64;
-            Failure::Fault(Fault::Watched { watch, fraction })
+            Failure::Fault(Fault::Watched { watch, fraction: of_all(fraction) })
         }
         other => other,
-    }
+    })
 }
 
 impl AfterForward<Acts<'_>> for op::Draw {
