@@ -228,15 +228,14 @@ fn what_another_error_takes_back_is_noticed_again_if_it_holds_still() {
 
 #[test]
 fn what_was_noticed_before_is_not_taken_for_an_error_of_another_recovery() {
-    let policies = [
-        "recover using other  then continue",
-        "recover by reversing 1 action  give up after 1 times  otherwise using other  then continue",
-    ];
-    for policy in policies {
+    for policy in [
+        "recover using other",
+        "recover by reversing 1 action  give up after 1 times  otherwise using other",
+    ] {
         let source = format!(
             "error seen {{ on input 0 high  respond after current sequence  recover using help
                           then continue }}
-            error late {{ {policy} }}
+            error late {{ {policy}  then continue }}
             sequence help {{ set 7 high }}
             sequence other {{ move 5 mm up  set 6 high }}
             sequence main {{ call inner  wait 1 s }}

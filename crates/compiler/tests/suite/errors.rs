@@ -239,25 +239,28 @@ fn recover_and_restart_the_program() {
         "$start",
         "
         enter
-        join +15
+        join +18
         push.int 1
         store.global n
         call main
         push.global $leaving
-        jump.unless +11
+        jump.unless +14
         push.global $restart
-        jump.unless +10
-        jump.unless.local.lt.imm $rounds 3 +10
+        jump.unless +13
+        jump.unless.local.lt.imm $rounds 3 +13
         add.local.imm $rounds 1
+        push.raised e
+        jump.unless +2
         error.clear e
+        join -2
         push.bool low
         store.global $restart
         push.bool low
         store.global $leaving
-        jump -15
-        land -11
-        join -10
-        join -10
+        jump -18
+        land -14
+        join -13
+        join -13
         halt
         ",
     );

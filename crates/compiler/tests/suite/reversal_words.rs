@@ -242,7 +242,10 @@ fn an_advanced_move_goes_back_by_its_counterpart_or_against_its_force() {
         block.begin
         call insert
         block.replace pull -2
+        push.raised jam
+        jump.unless +2
         error.clear jam
+        join -2
         return
         ",
     );
