@@ -15,7 +15,7 @@ here=$(cd "$(dirname "$0")" && pwd)
 root=$(cd "$here/../.." && pwd)
 target=${CARGO_TARGET_DIR:-$root/target}
 obverse=${OBVERSE:-$target/debug/obverse}
-scratch=$target/tmp/real-editor
+scratch=$target/real-editor
 version=4.96.4
 code=$scratch/code-server-$version
 

@@ -85,6 +85,20 @@ fn nor_where_the_program_begins_something_anew_and_another_error_comes_up_there(
 }
 
 #[test]
+fn what_cannot_be_taken_back_in_what_follows_is_not_past_it() {
+    let source = "
+        error late { recover by reversing 1 action  give up after 2 times  otherwise using other
+                     then return to action }
+        sequence other { set 3 high  barrier \"it is glued\"  set 4 high }
+        sequence main { set 1 high  call asks() }
+        action asks() { wait 1 s  if not input 0 { throw late } }
+    ";
+    let run = Case::new(source, NEVER_S).run();
+    assert!(matches!(run.ending, Ending::Unhandled(_)), "{:?}", run.ending);
+    assert_eq!((attempts(&run), outcomes(&run).len()), (2, 4));
+}
+
+#[test]
 fn what_the_run_got_past_may_be_gone_back_for_again() {
     let given_up = |then: &str| {
         let source = format!(

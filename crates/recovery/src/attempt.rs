@@ -16,7 +16,7 @@ use obverse_vm::{Mark, Stop};
 use obverse_workcell::{Fault, Goal, Motion, Path, Speed, Workcell};
 
 /// How often a way back that is blocked is tried again.
-const BLOCKED_TRIES: u32 = 2;
+pub(crate) const BLOCKED_TRIES: u32 = 2;
 /// The shortest way that a tool is backed up by, in metres.
 const BACK_UP_MIN_M: f64 = 0.005;
 
@@ -118,7 +118,7 @@ impl<C: Workcell> Run<'_, '_, '_, C> {
             }
             Stop::AtMark | Stop::OffMark | Stop::AtStart => {
                 self.at.trail.cut(self.driven.machine().state().steps());
-                self.notice_again(way.index);
+                self.notice_again(Some(self.at.open[way.index].error));
                 let taken = way.count - self.at.trail.actions().len();
                 self.come_to_end(way, Ok(taken))
             }
@@ -209,7 +209,7 @@ impl<C: Workcell> Run<'_, '_, '_, C> {
         let prefix = self.module().code.get(pc as usize).map_or(0, Instr::prefix);
         let before = self.driven.machine().state().steps().saturating_sub(1 + u64::from(prefix));
         self.at.trail.cut_into(before, pc);
-        self.notice_again(index);
+        self.notice_again(Some(self.at.open[index].error));
         count - self.at.trail.actions().len()
     }
 
@@ -259,7 +259,7 @@ impl<C: Workcell> Run<'_, '_, '_, C> {
         match self.driven.unwind_to(Mark::at(steps)) {
             Ok(()) | Err(Stop::AtStart) => {
                 self.at.trail.cut(self.driven.machine().state().steps());
-                self.notice_again(index);
+                self.notice_again(Some(self.at.open[index].error));
                 Ok(())
             }
             Err(_) => Err(GiveUp::NoWayBack { never: self.at.trail.never() }),

@@ -3,6 +3,7 @@
 //! It is what other strategies are measured against, since it knows what only the world knows; no
 //! real cell has it.
 
+use crate::attempt::BLOCKED_TRIES;
 use crate::driven::Direct;
 use crate::fault;
 use crate::recover::{Foresight, Site};
@@ -14,9 +15,6 @@ use obverse_workcell::Workcell;
 const DEPTHS_MAX: usize = 16;
 /// The most instructions that one try may take.
 const STEPS_MAX: u64 = 1_000_000;
-
-/// How often a way back that is blocked is tried again, as in a run.
-const BLOCKED_TRIES: u32 = 2;
 
 /// Knows the world that it is asked about, and all that chance has in store.
 #[derive(Clone, Copy, Debug, Default)]

@@ -27,6 +27,12 @@ impl Passage {
         !self.is_ahead && depth <= self.depth
     }
 
+    /// The run has gone over what cannot be taken back. Whether it has got past the place with it:
+    /// neither before that place nor in what is done about it there.
+    pub(crate) fn is_passed_with_a_barrier(&self) -> bool {
+        !self.is_ahead && !self.is_answering
+    }
+
     /// A call has returned to so many calls under way. Whether it is the one that was made from
     /// there.
     pub(crate) fn is_answered_with(&mut self, depth: usize) -> bool {

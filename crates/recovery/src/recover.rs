@@ -281,14 +281,13 @@ impl<'p, C: Workcell> Run<'_, 'p, '_, C> {
         is_raised
     }
 
-    /// The run was taken back for an incident: what was noticed since, of other errors, is to be
-    /// noticed again if it holds still. It happened in the world, which is not taken back.
-    pub(crate) fn notice_again(&mut self, index: usize) {
+    /// The run was taken back, for an error or by hand: what was noticed since, of other errors, is
+    /// to be noticed again if it holds still. It happened in the world, which is not taken back.
+    pub(crate) fn notice_again(&mut self, own: Option<ErrorId>) {
         let steps = self.driven.machine().state().steps();
-        let own = self.at.open[index].error.0;
         let first = self.at.noticed.partition_point(|(noticed, _)| *noticed <= steps);
         for (_, number) in self.at.noticed.split_off(first) {
-            if number != own {
+            if own != Some(ErrorId(number)) {
                 self.driven.watch_again(number);
             }
         }

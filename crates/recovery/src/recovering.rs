@@ -269,6 +269,7 @@ impl<'p> Recovering<'p> {
         let count = self.trail.count();
         self.given_up.retain(|old| old.number < count);
         let mut run = Run { driven, recovery, teller, at: self };
+        run.notice_again(None);
         run.close_all(&Ending::AtStart);
         if is_altered {
             run.driven.alter(None);

@@ -299,7 +299,7 @@ impl<'m> Trail<'m> {
         let is_never = matches!(event.instr.info().class, Class::Never(_));
         if is_never && event.open_blocks == 0 {
             self.begin_anew();
-            self.awaited.retain(|(_, passage)| passage.is_ahead);
+            self.awaited.retain(|(_, passage)| !passage.is_passed_with_a_barrier());
             self.never = Some(event.pc);
             return;
         }
@@ -311,10 +311,11 @@ impl<'m> Trail<'m> {
             }
             Instr::Return {} => {
                 self.end_call(event);
-                let passages = self.awaited.iter_mut();
-                let answered =
-                    passages.filter_map(|(_, it)| it.is_answered_with(event.frames).then_some(()));
-                if answered.count() > 0 {
+                let mut is_answered = false;
+                for (_, passage) in &mut self.awaited {
+                    is_answered |= passage.is_answered_with(event.frames);
+                }
+                if is_answered {
                     self.begin_anew();
                 }
             }

@@ -7,6 +7,8 @@ use obverse_debugger::{
     Breakpoint, Declined, Expression, Grain, Halt, Mode, Places, Run, Session, Value, Walk,
 };
 use obverse_recovery::{GiveUp, Intended, Outcome};
+use obverse_sim::cell::InputRule;
+use obverse_sim::{Cell, Sim};
 use obverse_testkit::Ledger;
 use obverse_vm::Direction::{Forward, Reverse};
 use obverse_vm::Stop;
@@ -255,4 +257,25 @@ fn the_cleanup_follows_what_ends_a_run_and_the_run_ends_in_that() {
     assert_eq!(outputs(&session), [1]);
     assert_eq!(session.go(Forward, Walk::Continue), halt);
     assert_eq!((outputs(&session), session.is_over()), (vec![1, 5], true));
+}
+
+#[test]
+fn what_was_noticed_and_is_gone_back_over_by_hand_is_noticed_again() {
+    let program = program_of(
+        "error seen { on input 0 high  recover using help  then continue }
+        sequence help { set 5 high }
+        sequence main { set 1 high  wait 1 s  set 2 high }",
+    );
+    let mut cell = Cell::bare();
+    cell.inputs[0] = InputRule::At(vec![(0.5, true)]);
+    let run = Run::new(&program, Sim::new(&cell, 0)).expect("it links");
+    let mut session = Session::over(run.simulated(None));
+    for round in 1..=2 {
+        let mut halts = (0..9).map(|_| session.go(Forward, Walk::Continue));
+        assert!(halts.any(|halt| halt == Halt::Stopped(Stop::Finished)), "round {round}");
+        let helped = Expression::parse(session.module(), 0, "output 5").expect("an output");
+        assert_eq!(session.look(|look| helped.value(look)), Value::Bool(true), "round {round}");
+        let back = session.go(Reverse, Walk::Continue);
+        assert_eq!(back, Halt::Stopped(Stop::AtStart), "round {round}");
+    }
 }
