@@ -18,8 +18,18 @@ use std::time::{Duration, Instant};
 const SOURCE: &str = include_str!("programs/long.obv");
 /// How often steps back are taken from the same end.
 const RUNS: usize = 7;
-/// What is asked for: a change long ago, one just now, one that only commands make, and a mixture.
-const ASKED: [&str; 4] = ["_early", "_sum", "output 2", "_early > 0 and output 2"];
+/// What is asked for: a change long ago, one just now, one that only commands make, a mixture, and
+/// what never came to hold of something that changes all the time.
+const ASKED: [&str; 8] = [
+    "_early",
+    "_sum",
+    "output 2",
+    "_early > 0 and output 2",
+    "_sum == 5",
+    "x == -5",
+    "_early == 2 and x > 3",
+    "steps < 100",
+];
 
 fn recorded(program: &Verified) -> (Run<'_, Ledger>, Duration) {
     let run = Run::new(program, Ledger::new(1));

@@ -7,6 +7,7 @@ use crate::subject::{Look, Subject, Value};
 use obverse_bytecode::Module;
 
 mod parse;
+mod span;
 
 /// Why a text is no condition.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -130,15 +131,7 @@ impl Node {
         match self {
             Self::Value(value) => value.clone(),
             Self::Subject(subject) => subject.read(look),
-            Self::Not(inner) => match inner.value(look) {
-                Value::Bool(value) => Value::Bool(!value),
-                _ => Value::Absent,
-            },
-            Self::Minus(inner) => match inner.value(look) {
-                Value::Int(value) => Value::Int(value.wrapping_neg()),
-                Value::Real(value) => Value::Real(-value),
-                _ => Value::Absent,
-            },
+            Self::Not(inner) | Self::Minus(inner) => self.of_one(inner.value(look)),
             Self::Two(operator, left, right) => {
                 let left = left.value(look);
                 match (operator, &left) {
@@ -146,6 +139,18 @@ impl Node {
                     _ => operator.of(&left, &right.value(look)),
                 }
             }
+        }
+    }
+}
+
+impl Node {
+    /// What a node of one operand makes of it.
+    fn of_one(&self, operand: Value) -> Value {
+        match (self, operand) {
+            (Self::Not(_), Value::Bool(value)) => Value::Bool(!value),
+            (Self::Minus(_), Value::Int(value)) => Value::Int(value.wrapping_neg()),
+            (Self::Minus(_), Value::Real(value)) => Value::Real(-value),
+            _ => Value::Absent,
         }
     }
 }

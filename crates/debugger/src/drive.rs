@@ -17,6 +17,9 @@ pub enum Pace<'s> {
     Run(u64),
     /// About so many instructions, and forward no further than to a stop.
     To(&'s Stops, u64),
+    /// About so many instructions forward, telling at each stop, and no further than to one where
+    /// the workcell is asked or commanded.
+    Past(&'s Stops, u64),
 }
 
 /// What came of it.
@@ -95,10 +98,13 @@ fn go(
         Pace::To(stops, instructions) if direction == Direction::Forward => {
             machine.run_to(stops, Limits::instructions(instructions), cell, observer)
         }
+        Pace::Past(stops, instructions) if direction == Direction::Forward => {
+            machine.run_past(stops, Limits::instructions(instructions), cell, observer)
+        }
         Pace::Run(instructions) => {
             Some(machine.run(direction, Limits::instructions(instructions), cell, observer))
         }
-        Pace::Step | Pace::To(..) => machine.step(direction, cell, observer).err(),
+        Pace::Step | Pace::To(..) | Pace::Past(..) => machine.step(direction, cell, observer).err(),
     }
     .filter(|stop| *stop != Stop::Budget)
 }

@@ -219,6 +219,28 @@ impl<'p> Rewound<'p> {
         }
     }
 
+    /// On towards a moment as far as the program runs forward by itself, telling before and behind
+    /// each stop; no further than to one where the workcell is asked or commanded, to an act that
+    /// was not done, or to the end of the stretch, which `walk_on` goes over.
+    pub(crate) fn walk_past(
+        &mut self,
+        recording: &Recording,
+        to: Moment,
+        stops: &Stops,
+        observer: &mut dyn Observer,
+    ) {
+        self.enter(recording);
+        let state = self.machine.state();
+        let is_between = state.pending().is_none() && state.operands().is_empty();
+        let is_forward = self.order(recording) == Some(Order::Forward);
+        if let Pace::Run(sure) = self.pace(self.left(recording, to))
+            && is_between
+            && is_forward
+        {
+            self.advance(recording, to, Pace::Past(stops, sure), observer);
+        }
+    }
+
     /// How many instructions are left of the stretch, or to a moment in it.
     fn left(&self, recording: &Recording, to: Moment) -> u64 {
         let end = self.stretch_end(recording);

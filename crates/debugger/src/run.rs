@@ -232,6 +232,7 @@ impl<C: Workcell> Live<'_, '_, C> {
             Pace::Step => Pace::Step,
             Pace::Run(most) => Pace::Run(most.min(until_due)),
             Pace::To(stops, most) => Pace::To(stops, most.min(until_due)),
+            Pace::Past(stops, most) => Pace::Past(stops, most.min(until_due)),
         };
         let (log, senses) = (&mut past.recording.log, &mut past.senses);
         let (copies, is_telling) = (past.copies.as_mut(), Cell::new(false));

@@ -6,15 +6,16 @@
 //! From a rewound moment of a simulated run one may go on otherwise, in a run of its own.
 //!
 //! How one moves is in `travel`, what is done about errors in `recover`, how one finds a moment in
-//! `search`, what is told of a moment in `tell`. A session prints nothing: fronts do.
+//! `search` and `changes`, what is told of a moment in `tell`. A session prints nothing: fronts do.
 
+mod changes;
 mod recover;
 mod search;
 mod tell;
 mod travel;
 
+pub use changes::Change;
 pub use recover::Policy;
-pub use search::Change;
 pub use tell::{Action, FrameView, Variable, Why};
 pub use travel::{Grain, Halt, Walk};
 
@@ -34,6 +35,9 @@ use recover::Standing;
 use std::collections::BTreeMap;
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
+
+/// After how many instructions it is seen at the latest that somebody interrupts.
+const PIECE: u64 = 1 << 20;
 
 /// How many jumps can be undone.
 const MAX_JUMPS: usize = 100;
@@ -105,6 +109,8 @@ pub enum Declined {
     NotAssignable,
     /// No error is due.
     NothingDue,
+    /// Somebody interrupted it.
+    Interrupted,
 }
 
 impl std::fmt::Display for Declined {
@@ -131,6 +137,7 @@ impl std::fmt::Display for Declined {
             Self::NoFork(why) => why.fmt(f),
             Self::NotAssignable => write!(f, "it cannot be given this value"),
             Self::NothingDue => write!(f, "no error is due in the run"),
+            Self::Interrupted => write!(f, "it was interrupted"),
         }
     }
 }

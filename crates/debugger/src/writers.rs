@@ -8,15 +8,19 @@ use obverse_isa::{Family, GlobalId, Instr, LocalId};
 /// The instructions of a module behind each of which an expression may be another; none if that is
 /// every one.
 pub(crate) fn writers(module: &Module, expression: &Expression) -> Option<Vec<u32>> {
+    let is_of_steps = expression.subjects().contains(&&Subject::Steps);
+    (!is_of_steps).then(|| writers_beside_steps(module, expression))
+}
+
+/// The instructions behind each of which an expression may be another because of something else
+/// than how many steps there were.
+pub(crate) fn writers_beside_steps(module: &Module, expression: &Expression) -> Vec<u32> {
     let mut all = Vec::new();
     for subject in expression.subjects() {
-        if *subject == Subject::Steps {
-            return None;
-        }
         let writes = |(pc, instr): &(u32, &Instr)| writes(module, subject, *pc, instr);
         all.extend((0..).zip(&module.code).filter(writes).map(|(pc, _)| pc));
     }
-    Some(all)
+    all
 }
 
 fn writes(module: &Module, subject: &Subject, pc: u32, instr: &Instr) -> bool {
@@ -51,7 +55,7 @@ fn writes(module: &Module, subject: &Subject, pc: u32, instr: &Instr) -> bool {
         | Subject::Force
         | Subject::Held
         | Subject::Time => commands(instr),
-        Subject::Steps => true,
+        Subject::Steps => false,
     }
 }
 

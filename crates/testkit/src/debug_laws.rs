@@ -167,8 +167,26 @@ fn all_of(run: &Run<'_, Ledger>, expression: &Expression) -> Vec<Shown> {
     }
 }
 
-/// Something to ask about that occurs in a program.
+/// Something to ask about that occurs in a program: of one thing, or of what it is at a count of
+/// steps.
 fn expression(u: &mut Unstructured<'_>, program: &Verified) -> Result<Expression> {
+    let module = program.module();
+    let one = subject(u, program)?;
+    let name = one.name(module);
+    let of = if let Subject::Local(function, _) = one { usize::from(function) } else { 0 };
+    let (steps, value) = (u.int_in_range(0..=900_u16)?, u.int_in_range(-2..=9_i8)?);
+    let text = match u.int_in_range(0..=7_u8)? {
+        0 => format!("steps > {steps}"),
+        1 => format!("{name} == {value} or steps * 3 - 7 < {steps}"),
+        2 => format!("{name} != {value} and not (steps <= {steps} + {value})"),
+        3 => format!("{name} == {value}"),
+        4 => format!("steps / 7 == {name}"),
+        _ => return Ok(Expression::of(module, one)),
+    };
+    Ok(Expression::parse(module, of, &text).unwrap_or_else(|_| Expression::of(module, one)))
+}
+
+fn subject(u: &mut Unstructured<'_>, program: &Verified) -> Result<Subject> {
     let module = program.module();
     let mut subjects = vec![Subject::Output(u.int_in_range(0..=3)?), Subject::Joint(1)];
     subjects.extend((0..module.globals.len()).map(|at| Subject::Global(GlobalId(at as u16))));
@@ -177,7 +195,7 @@ fn expression(u: &mut Unstructured<'_>, program: &Verified) -> Result<Expression
         subjects.extend(locals.map(|local| Subject::Local(index as u16, LocalId(local))));
     }
     subjects.extend((0..module.errors.len()).map(|at| Subject::Error(ErrorId(at as u16))));
-    Ok(Expression::of(module, u.choose(&subjects)?.clone()))
+    Ok(u.choose(&subjects)?.clone())
 }
 
 /// Any commands of a session lead to the moments that they are to lead to, found by going through

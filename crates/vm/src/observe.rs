@@ -1,6 +1,6 @@
 //! What a machine tells of its doings. Knows nothing of how they are told on.
 
-use crate::state::Direction;
+use crate::state::{Direction, State};
 use obverse_isa::Instr;
 use obverse_workcell::{MotionReport, Workcell};
 
@@ -33,6 +33,12 @@ pub struct Event {
 pub trait Observer {
     /// It was done.
     fn on_event(&mut self, event: &Event, cell: &dyn Workcell);
+
+    /// A run that goes past stops stands before one, having run or reversed so many instructions.
+    fn before_stop(&mut self, _: &State, _executed: u64) {}
+
+    /// It has gone past it, by one step.
+    fn behind_stop(&mut self, _: &State, _executed: u64) {}
 }
 
 impl Observer for () {

@@ -11,44 +11,47 @@ use crate::state::Direction;
 use crate::step::Host;
 use crate::stop::Stop;
 use obverse_bytecode::Module;
-use obverse_isa::Instr;
+use obverse_isa::{Family, Instr};
 use obverse_workcell::Workcell;
-use std::collections::BTreeSet;
 
 /// Places that a run stops at.
 #[derive(Clone, Debug)]
 pub struct Stops {
     code: Vec<Instr>,
-    at: BTreeSet<u32>,
+    /// Whether there is one before an instruction.
+    at: Vec<bool>,
 }
 
 impl Stops {
     /// Before instructions of a module. One that [`can_stop_at`] rules out is left out.
     #[must_use]
     pub fn new(module: &Module, at: impl IntoIterator<Item = u32>) -> Self {
-        let at: BTreeSet<u32> = at.into_iter().filter(|&pc| can_stop_at(module, pc)).collect();
-        let mut code = module.code.clone();
-        for &pc in &at {
-            code[pc as usize] = Instr::Halt {};
+        let mut stops = Self { code: module.code.clone(), at: vec![false; module.code.len()] };
+        for pc in at.into_iter().filter(|&pc| can_stop_at(module, pc)) {
+            stops.add(pc);
         }
-        Self { code, at }
+        stops
     }
 
     /// The same and one more, that [`can_stop_at`] does not rule out.
     #[must_use]
     pub fn with(&self, pc: u32) -> Self {
         let mut stops = self.clone();
-        if let Some(instr) = stops.code.get_mut(pc as usize) {
-            *instr = Instr::Halt {};
-            stops.at.insert(pc);
-        }
+        stops.add(pc);
         stops
+    }
+
+    fn add(&mut self, pc: u32) {
+        if let Some(instr) = self.code.get_mut(pc as usize) {
+            *instr = Instr::Halt {};
+            self.at[pc as usize] = true;
+        }
     }
 
     /// Whether a run stops before an instruction.
     #[must_use]
     pub fn has(&self, pc: u32) -> bool {
-        self.at.contains(&pc)
+        self.at.get(pc as usize).copied().unwrap_or(false)
     }
 }
 
@@ -105,6 +108,48 @@ impl Machine<'_> {
                 return None;
             }
         }
+    }
+
+    /// Run forward past the stops, telling before and behind each of them, and no further than to
+    /// one whose instruction asks or commands the workcell. Goes nowhere from in between: where an
+    /// act is not done, or where something runs in place of a reversal.
+    pub fn run_past(
+        &mut self,
+        stops: &Stops,
+        limits: Limits,
+        cell: &mut dyn Workcell,
+        observer: &mut dyn Observer,
+    ) -> Option<Stop> {
+        let allowed = self.executed.saturating_add(limits.instructions);
+        while self.executed < allowed {
+            if self.state.pending.is_some() || self.state.is_compensating() {
+                return None;
+            }
+            let left = allowed - self.executed;
+            let mut host = Host { cell: &mut *cell, observer: &mut *observer };
+            let outcome = if stops.has(self.state.pc()) {
+                self.pass(&mut host)?
+            } else {
+                self.net_of_traps(|machine| machine.burst_to(stops, left, &mut host))
+            };
+            if let Err(stop) = outcome {
+                return Some(stop);
+            }
+        }
+        None
+    }
+
+    /// One step from a stop, told; none if its instruction is for the workcell.
+    fn pass(&mut self, host: &mut Host<'_>) -> Option<crate::step::Outcome> {
+        let family = self.program.module().code[self.state.place.pc].info().family;
+        let is_its_own =
+            matches!(family, Family::Value | Family::Variable | Family::Flow | Family::Frame);
+        is_its_own.then(|| {
+            host.observer.before_stop(&self.state, self.executed);
+            let outcome = self.step(Direction::Forward, host.cell, host.observer);
+            host.observer.behind_stop(&self.state, self.executed);
+            outcome
+        })
     }
 
     /// As far as the hot loop goes, and one step more unless it stands before a stop.

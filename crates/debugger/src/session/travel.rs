@@ -4,7 +4,7 @@
 //! Live in reverse every instruction is a hop. Rewound, going back is looking for the newest moment
 //! before this one at which a run forward would have stopped.
 
-use super::{Declined, Session, look_at};
+use super::{Declined, PIECE, Session, look_at};
 use crate::breakpoint::{Before, Breakpoint, Hit};
 use crate::place::is_at_statement;
 use crate::recording::Moment;
@@ -281,7 +281,8 @@ impl<'p, C: Workcell> Session<'p, C> {
                 Before::of(&self.breakpoints, look)
             });
             let direction = view.direction(self.run.recording());
-            let halted = view.walk_on(self.run.recording(), until, stops.as_ref());
+            let to = view.moment().after(PIECE).min(until);
+            let halted = view.walk_on(self.run.recording(), to, stops.as_ref());
             if halted == Halted::Lost {
                 break Halt::Lost;
             }
@@ -292,7 +293,7 @@ impl<'p, C: Workcell> Session<'p, C> {
             if !hits.is_empty() {
                 break Halt::Hits(hits);
             }
-            if halted == Halted::There {
+            if halted == Halted::There && to >= until {
                 let is_end = view.moment() >= self.run.recording().end;
                 break if is_end { Halt::EndOfRecording } else { Halt::Limit };
             }
@@ -341,6 +342,7 @@ impl<'p, C: Workcell> Session<'p, C> {
             before = Some((moment, here));
             found.is_some()
         });
+        let Ok(is_found) = is_found else { return Halt::Interrupted };
         if !is_found {
             self.show(Some(Moment(0)));
             return Halt::StartOfRecording;
