@@ -4,8 +4,8 @@
 use obverse_compiler::compile;
 use obverse_geometry::JointConfiguration;
 use obverse_testkit::logged::{Command, Logged};
-use obverse_vm::{Alteration, Aside, Direction, Limits, Machine, Mark, Stop};
-use obverse_workcell::{Arm, Goal, Safety};
+use obverse_vm::{Alteration, Aside, Direction, Event, Limits, Machine, Mark, Observer, Stop};
+use obverse_workcell::{Arm, Clock, Goal, Safety, Workcell};
 
 const SOURCES: [&str; 3] = [
     "sequence main { move 40 mm forward wait 1 s }",
@@ -89,6 +89,28 @@ fn passed_over_it_leaves_nothing_behind() {
         to_the_end(machine, cell);
         assert_eq!(machine.unwind_to(Mark::at(1), cell), Ok(()));
         assert_eq!(machine.tape().expect("a tape").place(), bits);
+    });
+}
+
+/// Adds up how long the motions took that are told.
+struct Durations(f64);
+
+impl Observer for Durations {
+    fn on_event(&mut self, event: &Event, _: &dyn Workcell) {
+        self.0 += event.report.map_or(0.0, |report| report.duration_s);
+    }
+}
+
+#[test]
+fn what_is_told_of_it_is_how_long_both_of_its_ways_took() {
+    before("sequence main { move 40 mm forward }", |machine, cell| {
+        for direction in [Direction::Forward, Direction::Reverse] {
+            let (began_s, mut told) = (cell.now_s(), Durations(0.0));
+            machine.run(direction, Limits::NONE, cell, &mut told);
+            machine.alter(None);
+            let took_s = cell.now_s() - began_s;
+            assert!(took_s > 0.0 && (told.0 - took_s).abs() < 1e-9, "{} of {took_s} s", told.0);
+        }
     });
 }
 

@@ -4,9 +4,9 @@
 //! what begins then.
 
 use crate::load::{self, Program, Workcell};
-use crate::problem::{Message, Problem};
+use crate::problem::Problem;
 use crate::report;
-use obverse_bytecode::{encode, fingerprint};
+use obverse_bytecode::{decode, encode};
 use obverse_debugger::Before;
 use obverse_recovery::{Ending, drive};
 use obverse_sim::Sim;
@@ -54,39 +54,25 @@ pub(crate) fn lead(
     Ok(Some(before(&program)?))
 }
 
-/// Run again what a recorded run began after, now found under this name.
+/// Run again what a recorded run began after, which the tape holds.
 ///
 /// # Errors
-/// The same, and if it is not the program that it was.
+/// It does not verify, does not fit into the workcell, or does not come to its end there.
 pub(crate) fn lead_again(
     recorded: &Before,
-    first: &Path,
     cell: &mut Sim,
     file: &Workcell,
 ) -> Result<(), Problem> {
-    let program = load::quietly(first).map_err(|mut problem| {
-        let hint = || Message::new("the run began after it; `--after PROGRAM` says where it is");
-        let hinted = problem.messages.into_iter().map(|message| message.with(Some(hint())));
-        problem.messages = hinted.collect();
-        problem
-    })?;
-    let found = before(&program)?.fingerprint;
-    if found != recorded.fingerprint {
-        let (name, was) = (&recorded.program, recorded.fingerprint);
-        let why = format!(
-            "the run began after {name} as it was then ({was:016x}), and this is {found:016x}; \
-             `--after PROGRAM` names it where it is as it was, or record the run again"
-        );
-        return Err(Problem::of_file(first, why));
-    }
-    run_through(&program, cell, file)
+    let path = Path::new(&recorded.program);
+    let module = decode(&recorded.module).map_err(|error| Problem::of_file(path, error))?;
+    run_through(&load::verified(path, module, None)?, cell, file)
 }
 
 fn before(program: &Program) -> Result<Before, Problem> {
     let module = encode(program.verified.module());
     let module = module.map_err(|error| Problem::of_file(&program.path, error))?;
     let name = program.path.display().to_string();
-    Ok(Before { program: name, fingerprint: fingerprint(&module) })
+    Ok(Before { program: name, module })
 }
 
 fn run_through(program: &Program, cell: &mut Sim, file: &Workcell) -> Result<(), Problem> {

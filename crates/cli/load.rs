@@ -174,7 +174,12 @@ pub(crate) fn quietly(path: &Path) -> Result<Program, Problem> {
     verified(path, module, source)
 }
 
-fn verified(path: &Path, module: Module, source: Option<Diagnosed>) -> Result<Program, Problem> {
+/// The program of a module, verified.
+pub(crate) fn verified(
+    path: &Path,
+    module: Module,
+    source: Option<Diagnosed>,
+) -> Result<Program, Problem> {
     let verified = verify(module).map_err(|errors| {
         let message = |error: &obverse_bytecode::VerifyError| {
             Message::of_file(path, error).coded(error.rule.code().as_str())
@@ -207,23 +212,28 @@ pub(crate) fn workcell(
 /// The description of the workcell that a program runs in, and its file; a bare arm where none is
 /// named.
 pub(crate) fn cell(program: &Program, named: Option<&Path>) -> Result<(Cell, Workcell), Problem> {
-    let Some(path) = workcell_path(program, named) else {
-        let bare = Workcell { name: "a bare arm".to_owned(), text: None };
-        return Ok((Cell::bare(), bare));
-    };
+    let Some(path) = workcell_path(program, named) else { return Ok(bare()) };
     let raw = bytes(&path).map_err(|problem| match named {
         Some(_) => problem,
         None => named_by(program, problem),
     })?;
     let text = String::from_utf8(raw)
         .map_err(|error| not_text(&path, &error.utf8_error(), CellCode::Toml.as_str()))?;
-    let cell = Cell::parse(&text).map_err(|error| {
+    Ok((cell_of(&path, &text)?, Workcell { name: path.display().to_string(), text: Some(text) }))
+}
+
+/// The workcell of a program that names none.
+pub(crate) fn bare() -> (Cell, Workcell) {
+    (Cell::bare(), Workcell { name: "a bare arm".to_owned(), text: None })
+}
+
+/// The workcell that the text of a file describes.
+pub(crate) fn cell_of(path: &Path, text: &str) -> Result<Cell, Problem> {
+    Cell::parse(text).map_err(|error| {
         let place = (error.line, error.column);
-        let message = Message::of_file(&path, error.message).at(Some(place));
+        let message = Message::of_file(path, error.message).at(Some(place));
         Problem::several(vec![message.coded(error.code.as_str())])
-    })?;
-    let file = Workcell { name: path.display().to_string(), text: Some(text) };
-    Ok((cell, file))
+    })
 }
 
 fn not_text(path: &Path, error: &std::str::Utf8Error, code: &'static str) -> Problem {

@@ -3,11 +3,11 @@
 use crate::after;
 use crate::commands::run::Arguments;
 use crate::files;
-use crate::load::{self, Program};
+use crate::load::{self, Program, Workcell};
 use crate::problem::{Message, Problem, plain};
 use crate::show;
 use obverse_bytecode::{SourceFile, encode, fingerprint, verify};
-use obverse_debugger::{Before, Run, TapeFile, Taped, Writer, taped};
+use obverse_debugger::{Before, CellFile, Run, TapeFile, Taped, Writer, taped};
 use obverse_recovery::{Direct, Driven};
 use obverse_sim::Sim;
 use obverse_vm::Machine;
@@ -37,14 +37,14 @@ impl<'r, 'p> Rig<'r, 'p> {
         program: &Program,
         (machine, cell): (&'r mut Machine<'p>, &'r mut Sim),
         file: Option<&'r mut File>,
-        before: Option<Before>,
+        (workcell, before): (&Workcell, Option<Before>),
     ) -> Result<Self, Problem> {
         let (Some(path), Some(file)) = (&arguments.tape, file) else {
             return Ok(Self::Plain(Direct { machine, cell }));
         };
-        let cell_path = load::workcell_path(program, arguments.cell.as_deref());
-        let name = |path: &Path| path.display().to_string();
-        let names = (name(&program.path), cell_path.as_deref().map(name));
+        let text = workcell.text.clone();
+        let cell_file = text.map(|text| CellFile { name: workcell.name.clone(), text });
+        let names = (program.path.display().to_string(), cell_file);
         let mut head = taped::head(program.verified.module(), cell, names, arguments.seed)
             .map_err(|error| Problem::of_file(path, error))?;
         head.after = before;
@@ -66,22 +66,6 @@ impl<'r, 'p> Rig<'r, 'p> {
         taped.end(ending).map_err(|error| {
             Problem::of_file(path, format!("cannot be written: {}", plain(&error)))
         })
-    }
-}
-
-/// Where what a run began in is to be had, if elsewhere than the tape says.
-#[derive(Clone, Copy)]
-pub(crate) struct Named<'n> {
-    /// The workcell file.
-    pub(crate) cell: Option<&'n Path>,
-    /// The program that was run in it before.
-    pub(crate) after: Option<&'n Path>,
-}
-
-impl Named<'_> {
-    /// Whether anything is named.
-    pub(crate) fn is_any(self) -> bool {
-        self.cell.is_some() || self.after.is_some()
     }
 }
 
@@ -108,6 +92,14 @@ pub(crate) fn open(path: &Path) -> Result<Opened, Problem> {
     Ok(Opened { file, program, path: path.to_owned() })
 }
 
+/// What tells a program from others, whatever its files are called.
+fn identity(program: &Program) -> Result<u64, Problem> {
+    let mut module = program.verified.module().clone();
+    module.sources.iter_mut().for_each(|source| source.name.clear());
+    let bytes = encode(&module).map_err(|error| Problem::of_file(&program.path, error))?;
+    Ok(fingerprint(&bytes))
+}
+
 impl Opened {
     /// The run, at its end.
     ///
@@ -129,13 +121,12 @@ impl Opened {
     /// # Errors
     /// If it is not, with both names.
     pub(crate) fn check_is_of(&self, program: &Program) -> Result<(), Problem> {
-        let module = encode(program.verified.module());
-        let module = module.map_err(|error| Problem::of_file(&program.path, error))?;
-        if module == self.file.head.module {
+        let (recorded, named) = (&self.program, program);
+        let (was, is) = (identity(recorded)?, identity(named)?);
+        if was == is {
             return Ok(());
         }
-        let (recorded, named) = (&self.file.head.program, program.path.display());
-        let (was, is) = (fingerprint(&self.file.head.module), fingerprint(&module));
+        let (recorded, named) = (recorded.path.display(), named.path.display());
         let text = format!(
             "this is a run of {recorded} ({was:016x}), and not of {named} as it is now \
              ({is:016x}); leave the program out: the tape has its own, or record the run again"
@@ -164,7 +155,7 @@ impl Opened {
     }
 
     fn cell(&self) -> &str {
-        self.file.head.cell.as_deref().unwrap_or("a bare arm")
+        self.file.head.cell.as_ref().map_or("a bare arm", |cell| &cell.name)
     }
 
     /// Why nothing can be tried otherwise, if nothing can.
@@ -188,27 +179,24 @@ impl Opened {
         }
     }
 
-    /// The workcell that the run began in, if it is still to be had. Another file of it may be
-    /// named, and of the program that was run in it before.
+    /// The workcell that the run began in, or the one of another file, which is then to begin and
+    /// to act as that one did.
     ///
     /// # Errors
-    /// If it cannot be had, or nothing was run in it before and yet such a program is named.
-    pub(crate) fn start(&self, named: Named<'_>) -> Result<Sim, Problem> {
+    /// It cannot be read, or what was run in it before does not come to its end in it.
+    pub(crate) fn start(&self, named: Option<&Path>) -> Result<Sim, Problem> {
         let head = &self.file.head;
-        let path = named.cell.or(head.cell.as_deref().map(Path::new));
-        let (cell, file) = load::cell(&self.program, path)?;
+        let (cell, file) = match (named, &head.cell) {
+            (Some(_), _) => load::cell(&self.program, named)?,
+            (None, Some(CellFile { name, text })) => {
+                let file = Workcell { name: name.clone(), text: Some(text.clone()) };
+                (load::cell_of(Path::new(name), text)?, file)
+            }
+            (None, None) => load::bare(),
+        };
         let mut cell = Sim::new(&cell, head.seed);
-        match (&head.after, named.after) {
-            (None, None) => {}
-            (None, Some(first)) => {
-                let first = first.display();
-                let why = format!("its run began after nothing else; leave `--after {first}` out");
-                return Err(Problem::of_file(&self.path, why));
-            }
-            (Some(before), first) => {
-                let first = first.unwrap_or(Path::new(&before.program));
-                after::lead_again(before, first, &mut cell, &file)?;
-            }
+        if let Some(before) = &head.after {
+            after::lead_again(before, &mut cell, &file)?;
         }
         Ok(cell)
     }

@@ -59,32 +59,62 @@ fn a_tape_knows_what_its_run_began_after() {
 }
 
 #[test]
-fn what_a_run_began_after_is_found_elsewhere_if_it_is_named() {
-    let (bench, _) = taped("moved");
-    let sheets = bench.read("sheets.obv");
-    bench.write("old/sheets.obv", &sheets);
-    bench.write("old/vacuum_cell.toml", bench.read("vacuum_cell.toml"));
-    bench.write("sheets.obv", "cell \"vacuum_cell.toml\"\nsequence main { wait 1 s }\n");
-    // What cannot be tried is told, with the true reason; the rest of the session is as ever.
-    let told = bench.ends(0, &["debug", "--tape", "t.tape"]).stdout;
-    let lines = told.lines().collect::<Vec<_>>();
-    assert!(lines[2].starts_with("nothing can be tried otherwise: sheets.obv: "), "{told}");
-    assert!(lines[2].contains("the run began after sheets.obv as it was then"), "{told}");
-    assert!(!lines[2].contains("vacuum_cell.toml"), "the workcell is as it was: {told}");
-    let there = debug(&bench, 0, &["--tape", "t.tape", "--after", "old/sheets.obv"]);
-    assert_eq!(last_answer(&there)["halt"], "finished");
-    let wrong = ["debug", "--tape", "t.tape", "--after", "tower.obv"];
-    bench.refuses(&wrong, &["tower.obv: the run began after sheets.obv", "`--after PROGRAM`"]);
-    let none = ["debug", "--tape", "t.tape", "--after", "none.obv"];
-    bench.refuses(&none, &["none.obv: cannot be read", "the run began after it"]);
+fn a_tape_has_all_that_its_run_began_in() {
+    let (bench, ran) = taped("whole");
+    for file in ["sheets.obv", "apart.obv", "vacuum_cell.toml"] {
+        bench.write(file, "nothing of the kind\n");
+    }
+    let told = debug(&bench, 0, &["--tape", "t.tape"]);
+    let answer = last_answer(&told);
+    assert_eq!((&answer["halt"], &told.json()[0]["can_try"]), (&json!("finished"), &json!(true)));
+    assert_eq!(answer["position"]["moment"], ran["instructions"], "the same again");
+    let named = ["debug", "--tape", "t.tape", "--after", "sheets.obv"];
+    bench.refuses(&named, &["a tape has what its run began after: no `--after`"]);
 }
 
 #[test]
-fn a_run_that_began_after_nothing_is_not_begun_after_something() {
+fn another_workcell_is_tried_in_only_as_far_as_the_run_was_the_same_in_it() {
+    let bench = bench("other");
+    bench.ends(0, &["run", "sheets.obv", "--tape", "s.tape"]);
+    let cell = String::from_utf8(bench.read("vacuum_cell.toml")).expect("text");
+    let (home, speed) = ("home_rad = [3.1416,", "normal = { tool_mm_per_s = 100,");
+    let with = |old: &str, new: &str| {
+        assert!(cell.contains(old), "{old} is there");
+        cell.replace(old, new)
+    };
+    bench.write("elsewhere.toml", with(home, "home_rad = [3.1,"));
+    bench.write("faster.toml", with(speed, "normal = { tool_mm_per_s = 110,"));
+    let try_in = |cell: &str, commands: &str| {
+        bench.write("commands", commands);
+        let code = i32::from(!cell.starts_with("faster") || commands.starts_with("what-if"));
+        let told = debug(&bench, code, &["--tape", "s.tape", "--cell", cell]);
+        let mut answers = told.json().into_iter().filter(|line| line["command"] == "what-if");
+        answers.next().expect("an answer")
+    };
+    let at_start = "goto start\nwhat-if\n";
+    let refused = try_in("elsewhere.toml", at_start);
+    assert!(refused["why"].to_string().contains("does not begin as it did"), "{refused}");
+    let refused = try_in("faster.toml", "what-if\n");
+    assert!(refused["why"].to_string().contains("does not do again what it did"), "{refused}");
+    assert_eq!(try_in("faster.toml", at_start)["done"], true);
+}
+
+#[test]
+fn a_copy_of_the_program_is_the_program_of_the_tape() {
+    let bench = bench("copy");
+    bench.ends(0, &["run", "sheets.obv", "--tape", "s.tape"]);
+    let source = String::from_utf8(bench.read("sheets.obv")).expect("text");
+    bench.write("copy.obv", &source);
+    bench.write("other.obv", source.replace("sequence main {", "sequence main {\n  wait 1 s"));
+    debug(&bench, 0, &["copy.obv", "--tape", "s.tape"]);
+    let other = ["debug", "other.obv", "--tape", "s.tape"];
+    bench.refuses(&other, &["s.tape: this is a run of sheets.obv", "not of other.obv"]);
+}
+
+#[test]
+fn a_run_that_began_after_nothing_says_so() {
     let bench = bench("nothing");
     bench.ends(0, &["run", "sheets.obv", "--tape", "s.tape"]);
     let tape = &bench.ends(0, &["debug", "--json", "--tape", "s.tape"]).json()[0];
     assert_eq!((&tape["after"], &tape["can_try"]), (&json!(null), &json!(true)));
-    let named = ["debug", "--tape", "s.tape", "--after", "sheets.obv"];
-    bench.refuses(&named, &["s.tape: its run began after nothing else"]);
 }

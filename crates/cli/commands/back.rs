@@ -22,7 +22,8 @@ pub(crate) fn run(arguments: &Arguments) -> Result {
     let mut memory = kept.memory();
     let mut tape = taping::create(arguments.tape.as_deref())?;
     let start = machine.digest(&cell);
-    let mut rig = Rig::of(arguments, &program, (&mut machine, &mut cell), tape.as_mut(), before)?;
+    let mut rig =
+        Rig::of(arguments, &program, (&mut machine, &mut cell), tape.as_mut(), (&file, before))?;
     run::head(arguments, &file.name);
     let (there, _) = run::there(arguments, rig.driven(), &mut memory);
     let driven = rig.driven();

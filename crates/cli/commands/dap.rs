@@ -6,7 +6,6 @@
 use super::Result;
 use crate::load::Program;
 use crate::problem::{Problem, plain};
-use crate::taping::Named;
 use crate::{Outcome, after, load, show, taping};
 use obverse_dap::{Attach, Begin, Ended, Launch, Loaded, Wanted, serve};
 use std::io::{Read, Write};
@@ -103,12 +102,12 @@ fn attached(attach: &Attach) -> std::result::Result<Loaded, Problem> {
         }
         None => opened.paths(),
     };
-    let named = Named { cell: attach.cell.as_deref(), after: attach.after.as_deref() };
+    let named = attach.cell.as_deref();
     let start = opened.start(named);
     let mut notes = vec![opened.title(), opened.ending()];
     notes.extend(opened.lacks(start.as_ref().err()));
     let start = match start {
-        Err(problem) if named.is_any() => return Err(problem),
+        Err(problem) if named.is_some() => return Err(problem),
         start => start.ok().map(Box::new),
     };
     let seed = opened.file.head.seed;

@@ -9,7 +9,6 @@ use crate::problem::{Problem, plain};
 use crate::recovering::{Kept, PolicyArguments};
 use crate::report::Report;
 use crate::story::Story;
-use crate::taping::Named;
 use crate::{Outcome, lacking, taping, write};
 use obverse_debugger::{Policy, Run, Session};
 use obverse_sim::Sim;
@@ -85,6 +84,9 @@ fn post_mortem(arguments: &Arguments, tape: &Path, file: Option<&Path>) -> Resul
     if arguments.policy.memory.is_some() {
         return Err(Problem::new("a tape is only looked at, and teaches nothing: no `--memory`"));
     }
+    if arguments.after.after.is_some() {
+        return Err(Problem::new("a tape has what its run began after: no `--after`"));
+    }
     let opened = taping::open(tape)?;
     if let Some(file) = file {
         let program = load::program_with(file, &arguments.parameters.parameters)?;
@@ -92,12 +94,10 @@ fn post_mortem(arguments: &Arguments, tape: &Path, file: Option<&Path>) -> Resul
     }
     let lines = Lines::of(arguments.commands.as_deref(), arguments.json)?;
     let run = opened.run()?;
-    let (cell, after) = (arguments.cell.as_deref(), arguments.after.after.as_deref());
-    let named = Named { cell, after };
-    let start = opened.start(named);
-    let (start, lacks) = match start {
+    let named = arguments.cell.as_deref();
+    let (start, lacks) = match opened.start(named) {
         Ok(start) => (Some(start), None),
-        Err(problem) if named.is_any() => return Err(problem),
+        Err(problem) if named.is_some() => return Err(problem),
         Err(problem) => (None, Some(problem)),
     };
     let head = &opened.file.head;
@@ -105,7 +105,7 @@ fn post_mortem(arguments: &Arguments, tape: &Path, file: Option<&Path>) -> Resul
         let told = json!({
             "type": "tape",
             "program": head.program,
-            "cell": head.cell,
+            "cell": head.cell.as_ref().map(|cell| &cell.name),
             "seed": head.seed,
             "after": head.after.as_ref().map(|before| &before.program),
             "ending": opened.file.ending,

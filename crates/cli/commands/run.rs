@@ -69,7 +69,8 @@ pub(crate) fn run(arguments: &RunArguments) -> Result {
     let kept = Kept::read(arguments.recovering.policy.memory.as_deref(), &program, &file.name)?;
     let mut memory = kept.memory();
     let mut tape = taping::create(arguments.tape.as_deref())?;
-    let mut rig = Rig::of(arguments, &program, (&mut machine, &mut cell), tape.as_mut(), before)?;
+    let mut rig =
+        Rig::of(arguments, &program, (&mut machine, &mut cell), tape.as_mut(), (&file, before))?;
     head(arguments, &file.name);
     let (ending, incidents) = there(arguments, rig.driven(), &mut memory);
     let recorded = rig

@@ -14,7 +14,7 @@ use std::io::{self, Write};
 
 /// A tape file.
 pub const TAPE: Format =
-    Format { magic: *b"OBVTAPE\0", version: 6, name: "tape", remedy: "record the run again" };
+    Format { magic: *b"OBVTAPE\0", version: 7, name: "tape", remedy: "record the run again" };
 
 /// The most instructions that one piece tells of: who writes begins another long before.
 pub const MAX_PIECE_TICKS: u64 = 1 << 24;
@@ -26,8 +26,8 @@ pub struct Head {
     pub module: Vec<u8>,
     /// The program, as it was named.
     pub program: String,
-    /// The workcell file, as it was named; none for a bare arm.
-    pub cell: Option<String>,
+    /// The workcell file; none for a bare arm.
+    pub cell: Option<CellFile>,
     /// The seed of the workcell.
     pub seed: u64,
     /// The program that was run in the workcell before it; none where the workcell was as its file
@@ -39,13 +39,22 @@ pub struct Head {
     pub start: World,
 }
 
+/// A workcell file as it was when the run began, so that what is tried is tried in no other.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct CellFile {
+    /// What it was called.
+    pub name: String,
+    /// Its text.
+    pub text: String,
+}
+
 /// A program that was run in the workcell before the one of a tape.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Before {
     /// The program, as it was named.
     pub program: String,
-    /// What tells its module from others, as [`fingerprint`](obverse_bytecode::fingerprint) does.
-    pub fingerprint: u64,
+    /// The bytes of its module.
+    pub module: Vec<u8>,
 }
 
 /// What happened since the piece before.

@@ -36,7 +36,7 @@ mod writers;
 
 pub use breakpoint::{Breakpoint, Hit, Piece, PlaceError, Places, What};
 pub use condition::{ConditionError, Expression};
-pub use file::{Before, Head, TapeFile, Writer};
+pub use file::{Before, CellFile, Head, TapeFile, Writer};
 pub use place::{Mode, Position, SourcePlace};
 pub use recording::{Moment, Recording};
 pub use run::{NoFork, Run};

@@ -57,46 +57,70 @@ impl Senses {
     }
 }
 
-/// Copies of a simulated workcell along a run, each with how many commands it had been given.
+/// Copies of a simulated workcell along a run.
 #[derive(Debug)]
 pub struct Copies<C> {
     copy: fn(&C) -> C,
-    kept: Vec<(usize, C)>,
+    /// Oldest first.
+    kept: Vec<CellCopy<C>>,
     every: usize,
+}
+
+/// A simulated workcell as it was.
+#[derive(Debug)]
+struct CellCopy<C> {
+    /// How many commands it had been given.
+    frame: usize,
+    cell: C,
+    /// Whether it follows from none that is older: the first, and where it was changed by hand.
+    is_anew: bool,
 }
 
 impl<C> Copies<C> {
     /// With a copy of the workcell as it is after so many commands.
     pub(crate) fn new(copy: fn(&C) -> C, frame: usize, cell: &C) -> Self {
-        Self { copy, kept: vec![(frame, copy(cell))], every: 8 }
+        let first = CellCopy { frame, cell: copy(cell), is_anew: true };
+        Self { copy, kept: vec![first], every: 8 }
     }
 
     fn note(&mut self, frame: usize, cell: &C) {
-        let newest = self.kept.last().map_or(0, |(frame, _)| *frame);
+        let newest = self.kept.last().map_or(0, |newest| newest.frame);
         if frame < newest + self.every {
             return;
         }
         if self.kept.len() >= MAX_COPIES {
             let mut index = 0;
-            self.kept.retain(|_| {
+            self.kept.retain(|kept| {
                 index += 1;
-                index % 2 == 1
+                index % 2 == 1 || kept.is_anew
             });
             self.every *= 2;
         }
-        self.kept.push((frame, (self.copy)(cell)));
+        self.kept.push(CellCopy { frame, cell: (self.copy)(cell), is_anew: false });
+    }
+
+    /// The workcell was changed by hand after so many commands.
+    pub(crate) fn note_changed(&mut self, frame: usize, cell: &C) {
+        self.kept.push(CellCopy { frame, cell: (self.copy)(cell), is_anew: true });
     }
 
     /// A copy of the workcell after at most so many commands, and after how many.
     pub(crate) fn before(&self, frame: usize) -> Option<(usize, C)> {
-        let after = self.kept.partition_point(|(at, _)| *at <= frame);
-        let (at, cell) = self.kept.get(after.checked_sub(1)?)?;
-        Some((*at, (self.copy)(cell)))
+        let after = self.kept.partition_point(|kept| kept.frame <= frame);
+        let found = self.kept.get(after.checked_sub(1)?)?;
+        Some((found.frame, (self.copy)(&found.cell)))
     }
 
-    /// How a copy is made.
-    pub(crate) fn how(&self) -> fn(&C) -> C {
-        self.copy
+    /// Those after at most so many commands.
+    pub(crate) fn up_to(&self, frame: usize) -> Self {
+        let until = self.kept.partition_point(|kept| kept.frame <= frame);
+        let copy = |kept: &CellCopy<C>| CellCopy { cell: (self.copy)(&kept.cell), ..*kept };
+        Self { copy: self.copy, kept: self.kept[..until].iter().map(copy).collect(), ..*self }
+    }
+
+    /// What the run began with, if it began so.
+    pub(crate) fn first(&self) -> Option<&C> {
+        self.kept.first().filter(|first| first.frame == 0).map(|first| &first.cell)
     }
 }
 

@@ -320,9 +320,9 @@ fn begin(recording: &mut Recording, order: Order, goes_on_at: Option<usize>) {
 pub enum NoFork {
     /// No copy of the workcell is kept: it is none that is simulated.
     NotSimulated,
-    /// The workcell does not do again what it did: its file has changed since.
+    /// The workcell does not do again what it did: it is another one.
     AnotherWorkcell {
-        /// The first command that it did otherwise.
+        /// The first command that it did otherwise, from 1; 0 if it does not begin so.
         frame: usize,
     },
 }
@@ -331,10 +331,12 @@ impl std::fmt::Display for NoFork {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         match self {
             Self::NotSimulated => write!(f, "only a simulated workcell can go on otherwise"),
+            Self::AnotherWorkcell { frame: 0 } => {
+                write!(f, "the workcell does not begin as it did in the run: it is another one")
+            }
             Self::AnotherWorkcell { frame } => write!(
                 f,
-                "the workcell does not do again what it did at command {frame}: its file has \
-                 changed since the run"
+                "the workcell does not do again what it did at command {frame}: it is another one"
             ),
         }
     }
@@ -348,6 +350,9 @@ impl<'p, C: Workcell> Run<'p, C> {
     pub fn fork(&self, at: &Rewound<'p>) -> Result<Self, NoFork> {
         let frame = at.cursor().frame();
         let copies = self.past.copies.as_ref().ok_or(NoFork::NotSimulated)?;
+        if copies.first().is_some_and(|first| !self.begins_in(first)) {
+            return Err(NoFork::AnotherWorkcell { frame: 0 });
+        }
         let (from, mut cell) = copies.before(frame).ok_or(NoFork::NotSimulated)?;
         for number in from..frame {
             self.do_again(number, &mut cell)
@@ -356,7 +361,7 @@ impl<'p, C: Workcell> Run<'p, C> {
         let recording = self.past.recording.up_to(at);
         let past = Past {
             machine: at.machine().clone(),
-            copies: Some(Copies::new(copies.how(), frame, &cell)),
+            copies: Some(copies.up_to(frame)),
             timeline: self.past.timeline.before_all_of(at.moment()),
             notes: self
                 .past
@@ -372,6 +377,13 @@ impl<'p, C: Workcell> Run<'p, C> {
             recording,
         };
         Ok(Self { cell: Some(cell), past })
+    }
+
+    /// Whether this is the workcell that the run began in, as far as a program sees.
+    fn begins_in(&self, cell: &C) -> bool {
+        let recording = &self.past.recording;
+        let module = self.past.machine.program().module();
+        world(cell) == recording.start && facts(module, cell) == recording.facts
     }
 
     /// Let a workcell do a command of the recording; none if it comes to something else.
@@ -413,9 +425,14 @@ impl<'p, C: Workcell> Run<'p, C> {
         }
     }
 
-    /// The workcell, to change it by hand; what is commanded so is not recorded.
-    pub fn cell_mut(&mut self) -> Option<&mut C> {
-        self.cell.as_mut()
+    /// Change the workcell by hand, if there is one; what is commanded so is not recorded.
+    pub fn change_cell(&mut self, change: impl FnOnce(&mut C)) -> Option<()> {
+        let cell = self.cell.as_mut()?;
+        change(cell);
+        if let Some(copies) = &mut self.past.copies {
+            copies.note_changed(self.past.recording.log.frames.len(), cell);
+        }
+        Some(())
     }
 }
 

@@ -404,7 +404,7 @@ impl<'p, C: Workcell> Session<'p, C> {
         if self.mode() != Mode::WhatIf {
             return Err(Declined::NoWhatIf);
         }
-        self.run.cell_mut().map(change).ok_or(Declined::NoWhatIf)
+        self.run.change_cell(change).ok_or(Declined::NoWhatIf)
     }
 
     /// In what is tried, read an input as this level from here on, or as what it is.

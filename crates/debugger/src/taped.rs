@@ -5,7 +5,7 @@
 //! where it is a few dozen commands: a run that is killed loses no more, and the act it was in.
 
 use crate::drive::{Driven, Pace, drive};
-use crate::file::{Head, Piece, Writer};
+use crate::file::{CellFile, Head, Piece, Writer};
 use crate::recorder::{Recorder, Senses, facts, world};
 use crate::recording::{Log, Moment, Order, Stretch};
 use crate::writers::commands;
@@ -57,12 +57,12 @@ pub struct Taped<'t, 'w, 'p, C> {
 pub fn head(
     module: &Module,
     cell: &impl Workcell,
-    (program, cell_name): (String, Option<String>),
+    (program, cell_file): (String, Option<CellFile>),
     seed: u64,
 ) -> Result<Head, DecodeError> {
     let (facts, start) = (facts(module, cell), world(cell));
     let module = encode(module)?;
-    Ok(Head { module, program, cell: cell_name, seed, after: None, facts, start })
+    Ok(Head { module, program, cell: cell_file, seed, after: None, facts, start })
 }
 
 impl<'t, 'w, 'p, C: Workcell> Taped<'t, 'w, 'p, C> {

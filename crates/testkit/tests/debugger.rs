@@ -92,6 +92,26 @@ fn what_is_tried_is_another_run_and_leaving_it_shows_what_was_shown() {
 }
 
 #[test]
+fn what_is_tried_can_be_left_for_another_try_from_before_it_began() {
+    let program = program();
+    let mut session = finished(&program);
+    let (end, digest) = (session.moment(), session.digest());
+    session.go_to(Moment(end.0 - 4)).expect("there is such a moment");
+    session.what_if().expect("it is simulated");
+    session.change_workcell(|cell| cell.acts += 1).expect("something is tried");
+    session.go(Forward, Walk::Continue);
+    session.go_to(Moment(2)).expect("there is such a moment");
+    session.what_if().expect("the workcell of before the first try is known");
+    assert_eq!(session.tries(), 2);
+    session.go(Forward, Walk::Continue);
+    assert_eq!((session.moment(), session.digest()), (end, digest), "the same again");
+    session.leave_what_if().expect("something is tried");
+    session.leave_what_if().expect("something is tried");
+    session.go_to_end();
+    assert_eq!((session.mode(), session.digest()), (Mode::Live, digest));
+}
+
+#[test]
 fn an_act_that_was_cut_by_what_is_watched_is_shown_so_and_can_be_gone_on_from() {
     let source = "error opened { on input 0 high  respond at once  then stop }
                   sequence main { move 10 mm up  move 20 mm up  set 2 high }";

@@ -90,4 +90,3 @@ impl<'p, C: Workcell> Session<'p, C> {
         Ok(moment)
     }
 }
-

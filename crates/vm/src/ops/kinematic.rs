@@ -13,7 +13,7 @@ use crate::stop::TrapKind;
 use obverse_geometry::{JointConfiguration, Pose};
 use obverse_isa::{self as isa, op};
 use obverse_tape::record::Joints;
-use obverse_workcell::{Fault, Goal, Motion, MotionEnd, Path};
+use obverse_workcell::{Fault, Goal, Motion, MotionEnd, MotionReport, Path};
 
 impl Acts<'_> {
     fn go(&mut self, goal: Goal, path: Path, force_limit_n: Option<f64>) -> Result<(), Failure> {
@@ -22,15 +22,24 @@ impl Acts<'_> {
             Some(alteration) => self.altered(alteration, motion)?,
             None => motion,
         };
-        self.done.report = Some(self.execute(&motion)?);
+        let report = self.execute(&motion)?;
+        self.moved(report);
         Ok(())
+    }
+
+    /// What is told of an effect that moves is the last motion, and how long all of them took.
+    fn moved(&mut self, report: MotionReport) {
+        let before_s = self.done.report.map_or(0.0, |before| before.duration_s);
+        self.done.report =
+            Some(MotionReport { duration_s: before_s + report.duration_s, ..report });
     }
 
     /// The motion to make instead, once what is done before it has been.
     fn altered(&mut self, alteration: &Alteration, motion: Motion) -> Result<Motion, Failure> {
         let (before, mut motion) = alteration.of(self.pc, motion);
         let Some(before) = before else { return Ok(motion) };
-        self.execute(&before)?;
+        let report = self.execute(&before)?;
+        self.moved(report);
         self.done.aside = Some(self.cell.joints());
         if let Goal::Displaced { from, .. } | Goal::Turned { from, .. } = &mut motion.goal {
             *from = self.cell.joints();
@@ -53,7 +62,7 @@ impl Acts<'_> {
             force_limit_n,
         };
         let report = self.cell.execute(&motion)?;
-        self.done.report = Some(report);
+        self.moved(report);
         match (report.end, force_limit_n) {
             (MotionEnd::StoppedByForce, Some(limit_n)) => {
                 Err(Fault::ForceLimit { force_n: report.peak_force_n, limit_n }.into())
