@@ -9,7 +9,6 @@ mod commands;
 mod cycle;
 mod debug;
 mod files;
-mod framing;
 mod lacking;
 mod load;
 mod moves;

@@ -99,14 +99,42 @@ fn what_is_no_message_is_answered_and_the_session_goes_on() {
 }
 
 #[test]
-fn a_stream_that_breaks_ends_the_server_with_a_word() {
+fn what_is_no_header_costs_no_message_but_itself() {
+    let wrong: [(&[u8], &str); 5] = [
+        (b"GET / HTTP/1.1\r\nHost: x\r\n\r\n", "`GET / HTTP/1.1` is no line of a header"),
+        (b"Content-Length: abc\r\n\r\n{\"id\":7}", "`abc` is not the length of a message"),
+        (b"Content-Length: 99999999999\r\n\r\n", "99999999999 bytes is not read"),
+        (b"Content-Length: 99\r\n\r\n{\"id\"", "99 bytes ends after 5"),
+        (b"\x00\xff", "is no line of a header"),
+    ];
+    let bench = Bench::new("lsp_header");
+    for (bytes, why) in wrong {
+        let mut input = begin();
+        input.extend(bytes);
+        input.extend(request(2, "textDocument/codeLens", json!({})));
+        input.extend(end());
+        let (code, messages, stderr) = session(&bench, &input);
+        assert_eq!(code, 0, "{stderr}");
+        let refused: Vec<&Value> =
+            messages.iter().filter(|one| one["error"]["code"] == -32700).collect();
+        assert_eq!(refused.len(), 1, "{messages:?}");
+        assert_eq!(refused[0]["id"], Value::Null);
+        assert!(refused[0]["error"]["message"].to_string().contains(why), "{refused:?}");
+        assert!(stderr.contains(why), "{stderr}");
+        // The next one is answered, and the one behind it.
+        for id in [2, 9] {
+            assert!(messages.iter().any(|one| one["id"] == id), "{id}: {messages:?}");
+        }
+    }
+}
+
+#[test]
+fn a_stream_that_ends_ends_the_server_with_a_word() {
     let bench = Bench::new("lsp_broken");
-    let broken: [(&[u8], &str); 5] = [
+    let broken: [(&[u8], &str); 3] = [
         (b"", "the editor went away"),
-        (b"GET / HTTP/1.1\r\nHost: x\r\n\r\n", "is no line of a header"),
-        (b"Content-Length: 99\r\n\r\n{\"id\"", "ends after 5 of 99 bytes"),
-        (b"Content-Length: 99999999999\r\n\r\n", "64 MiB are the most allowed"),
-        (b"Content-Length: 3\r\n", "ends within a header"),
+        (b"Content-Length: 99\r\n\r\n{\"id\"", "in the middle of a message: 5 of 99 bytes"),
+        (b"Content-Length: 3\r\n", "in the middle of a header"),
     ];
     for (bytes, why) in broken {
         let mut input = begin();

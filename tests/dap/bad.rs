@@ -91,6 +91,31 @@ fn garbage_is_answered_and_the_session_goes_on() {
     assert_eq!(client.bye("garbage"), Some(0));
 }
 
+/// A header that is none is said before anything else comes, and costs no request.
+#[test]
+fn behind_a_header_that_is_none_the_next_request_is_answered() {
+    let mut client = Client::at_entry("glue.obv");
+    let line = client.line();
+    let wrong: [(&[u8], &str); 5] = [
+        (b"Content-Length: abc\r\n\r\n{\"seq\":3,\"type\":\"request\"}", "`abc` is not the length"),
+        (b"Content-Length: 99999999999\r\n\r\n", "99999999999 bytes is not read"),
+        (b"{\"seq\":3}", "is no line of a header"),
+        (b"\x00\xff\r\n\r\n", "is no line of a header"),
+        (b"Content-Type: x\r\n\r\n", "must say `Content-Length`"),
+    ];
+    for (bytes, why) in wrong {
+        client.raw(bytes);
+        let told = client.event("output");
+        assert!(told["output"].as_str().is_some_and(|text| text.contains(why)), "{told}");
+        let before = client.came.len();
+        assert_eq!(client.line(), line);
+        assert_eq!(client.came.len(), before + 1, "nothing else is said");
+    }
+    client.raw(b"Content-Length: 90\r\n\r\n{}");
+    assert_eq!(client.line(), line, "a length that is too large takes no request");
+    assert_eq!(client.bye("headers"), Some(0));
+}
+
 #[test]
 fn a_client_that_goes_away_ends_it() {
     let client = Client::at_entry("glue.obv");

@@ -1,16 +1,20 @@
 //! `obverse lsp`: the language server on standard input and output.
 
 use super::Result;
+use crate::Outcome;
 use crate::files::{self, ProgramFolder};
-use crate::{Outcome, framing};
 use lsp_server::{Connection, ErrorCode, Message};
 use obverse_compiler::Loader;
+use obverse_dap::frame::{self, Frame, Reader};
 use obverse_lsp::{Disk, Ended, serve};
 use serde_json::{Value, json};
 use std::fs;
 use std::io::{self, Write};
 use std::path::Path;
 use std::sync::{Arc, Mutex};
+
+/// The longest message, in bytes.
+const MAX_MESSAGE: usize = 64 << 20;
 
 /// So many source files of one folder are looked at for what they import.
 const MAX_SOURCES: usize = 100;
@@ -29,7 +33,7 @@ pub(crate) struct Arguments {
 const EXIT_CODES: &str = "\
 Exit codes:
   0  the editor has shut the server down and told it to exit
-  1  it told it to exit at once, went away, or sent what is no message; standard error says so";
+  1  it told it to exit at once, or went away; standard error says so";
 
 pub(crate) fn run(arguments: &Arguments) -> Result {
     // Editors say so; there is nothing else to choose.
@@ -46,10 +50,10 @@ pub(crate) fn run(arguments: &Arguments) -> Result {
         }
     });
     std::thread::spawn(move || {
-        let mut input = io::stdin().lock();
+        let mut input = Reader::new(io::stdin().lock(), MAX_MESSAGE);
         loop {
-            match framing::read(&mut input) {
-                Ok(Some(bytes)) => match message(&bytes) {
+            match input.read() {
+                Frame::Message(bytes) => match message(&bytes) {
                     Ok(message) => {
                         let is_exit =
                             matches!(&message, Message::Notification(one) if one.method == "exit");
@@ -59,8 +63,12 @@ pub(crate) fn run(arguments: &Arguments) -> Result {
                     }
                     Err(refusal) => _ = write(&refusals, &refusal),
                 },
-                Ok(None) => return log("the editor went away"),
-                Err(why) => return log(&format!("standard input is not understood: {why}")),
+                Frame::Wrong(why) => {
+                    let refusal = refusal(&Value::Null, ErrorCode::ParseError, why);
+                    write(&refusals, &refusal);
+                }
+                Frame::End(None) => return log("the editor went away"),
+                Frame::End(Some(why)) => return log(&why),
             }
         }
     });
@@ -76,11 +84,6 @@ pub(crate) fn run(arguments: &Arguments) -> Result {
 
 /// The message that bytes are, or the answer that they are none.
 fn message(bytes: &[u8]) -> std::result::Result<Message, String> {
-    let refusal = |id: &Value, code: ErrorCode, why: String| {
-        log(&format!("a message is not understood: {why}"));
-        let error = json!({ "code": code as i32, "message": why });
-        json!({ "jsonrpc": "2.0", "id": id, "error": error }).to_string()
-    };
     let value: Value = serde_json::from_slice(bytes)
         .map_err(|error| refusal(&Value::Null, ErrorCode::ParseError, error.to_string()))?;
     let id = value.get("id").filter(|id| id.is_string() || id.is_i64()).cloned();
@@ -88,6 +91,13 @@ fn message(bytes: &[u8]) -> std::result::Result<Message, String> {
         let why = "neither a request nor a notification nor a response".to_owned();
         refusal(&id.unwrap_or_default(), ErrorCode::InvalidRequest, why)
     })
+}
+
+/// The answer that something is no message, which is logged too.
+fn refusal(id: &Value, code: ErrorCode, why: String) -> String {
+    log(&format!("a message is not understood: {why}"));
+    let error = json!({ "code": code as i32, "message": why });
+    json!({ "jsonrpc": "2.0", "id": id, "error": error }).to_string()
 }
 
 /// Write a message; whether the editor is still there.
@@ -99,7 +109,7 @@ fn say(output: &Mutex<io::Stdout>, message: &Message) -> bool {
 
 fn write(output: &Mutex<io::Stdout>, text: &str) -> bool {
     let Ok(mut output) = output.lock() else { return false };
-    framing::write(&mut *output, text).is_ok()
+    frame::write(&mut *output, text.as_bytes()).is_ok()
 }
 
 /// Tell whoever reads standard error, which editors show on demand.

@@ -3,13 +3,15 @@
 //! A thread of its own reads them and hands them over one at a time: as long as one is not taken,
 //! nothing more is read, and the run under way is asked to halt so that it can be.
 
-use crate::frame::{self, Frame};
-use std::io::{BufReader, Read};
+use crate::frame::{Frame, Reader};
+use std::io::Read;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc::{Receiver, SyncSender, TrySendError, sync_channel};
 use std::sync::{Arc, Mutex, PoisonError};
 use std::time::Duration;
 
+/// The longest message, in bytes.
+const MAX_MESSAGE: usize = 1 << 20;
 /// How long a message waits before a run is asked to halt for it, again and again.
 const PATIENCE: Duration = Duration::from_millis(1);
 /// How long to look for the message that a run was halted for.
@@ -52,9 +54,9 @@ impl Inbox {
 }
 
 fn listen(input: impl Read, sender: &SyncSender<Frame>, bell: &Bell) {
-    let mut input = BufReader::new(input);
+    let mut input = Reader::new(input, MAX_MESSAGE);
     loop {
-        let mut frame = frame::read(&mut input);
+        let mut frame = input.read();
         let is_end = matches!(frame, Frame::End(_));
         loop {
             match sender.try_send(frame) {
