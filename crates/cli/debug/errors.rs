@@ -115,7 +115,7 @@ pub(super) fn halted(front: &Front<'_>, halt: &Halt) -> Vec<String> {
 pub(super) fn intent(front: &mut Front<'_>, halt: &Halt) -> Value {
     let is_due = matches!(halt, Halt::Stopped(Stop::Due { .. }));
     let Some(intent) = front.session.intent().filter(|_| is_due) else { return Value::Null };
-    let Intent { incident, what } = &intent;
+    let Intent { incident, what, .. } = &intent;
     let mut object = json!({
         "error": obverse_recovery::name(front.module, incident),
         "attempts": incident.attempts.len(),
