@@ -139,6 +139,40 @@ fn what_ended_a_run_is_recovered_from_in_a_what_if_from_its_tape() {
     bench.refuses(&["debug", "--tape", "t.tape", "--memory", "m.toml"], &["no `--memory`"]);
 }
 
+/// Where the strategy calls a person, a session ends where the run does, however it is gone on with.
+#[test]
+fn a_strategy_that_gives_up_ends_a_session_where_it_ends_the_run() {
+    let bench = Bench::new("debug_given_up");
+    let arguments = [PROGRAM, "--strategy", "stop"];
+    let ran = bench.run(&[&["run", "--json"], &arguments[..]].concat());
+    let commands = ["c", "c", "c", "step", "finish", "until", "c", "reverse-next"];
+    let walked = session(&bench, &arguments, &commands);
+    let all = answers(&walked);
+    let told = story(&ran);
+    assert_eq!(story(&walked)[..told.len()], told);
+    let next = all[0]["next"]["text"].as_str().unwrap_or_default();
+    assert!(next.ends_with("then an operator is called"), "{next}");
+    for answer in &all[1..7] {
+        assert_eq!(answer["halt"], "given_up", "{answer}");
+        assert_eq!(answer["position"], all[1]["position"], "{answer}");
+    }
+    assert_eq!(all[7]["halt"], "done", "by hand it goes back");
+}
+
+/// `--release` gives as many releases beforehand as it does in `run`.
+#[test]
+fn releases_that_are_given_beforehand_are_those_of_run() {
+    let bench = Bench::new("debug_release");
+    bench.write("b.obv", BUMPS);
+    for count in ["0", "1", "2", "9"] {
+        let ran = bench.run(&["run", "b.obv", "--json", "--release", count]);
+        let commands = ["c"; 12];
+        let walked = session(&bench, &["b.obv", "--release", count], &commands);
+        assert_eq!(story(&walked), story(&ran), "{count}\n{}", walked.stdout);
+        assert_eq!(walked.summary()["held"], ran.summary()["held"], "{count}");
+    }
+}
+
 /// What is tried recovers by itself, from the past too, and the run knows nothing of it.
 #[test]
 fn a_what_if_recovers_and_teaches_nothing() {

@@ -39,6 +39,9 @@ pub(crate) struct Arguments {
     /// Stop a command after about so many instructions.
     #[arg(long, default_value_t = LIMIT, value_name = "N")]
     limit: u64,
+    /// How often a stopped arm is released without a `release`, as it is in `run`.
+    #[arg(long, default_value_t = 0, value_name = "N", conflicts_with = "tape")]
+    release: u32,
     #[command(flatten)]
     after: AfterArguments,
     #[command(flatten)]
@@ -147,7 +150,7 @@ fn converse(
     });
     let policy = Policy { strategy: arguments.policy.strategy, ..Policy::declared(seed) };
     session.recover_by(policy, kept.map(Kept::memory).unwrap_or_default());
-    let mut front = Front::over(session, Face::of(arguments.json));
+    let mut front = Front::over(session, Face::of(arguments.json), arguments.release);
     let failed = front.converse(&mut lines)?;
     kept.map_or(Ok(()), |kept| kept.keep(front.memory()))?;
     Ok(if failed == 0 || lines.is_terminal() { Outcome::Done } else { Outcome::EndedOtherwise })

@@ -1,9 +1,9 @@
 //! What the line editor offers: commands, and behind them what they take.
 
+use super::Front;
+use super::stops::INFO;
 use super::table::{self, Offers};
-use obverse_bytecode::{FunctionKind, Mentioned, Module};
-use obverse_debugger::Session;
-use obverse_sim::Sim;
+use obverse_bytecode::{FunctionKind, Mentioned};
 use rustyline::completion::Completer as Completes;
 use rustyline::highlight::Highlighter;
 use rustyline::hint::Hinter;
@@ -16,17 +16,20 @@ pub(super) struct Names {
     places: Vec<String>,
     values: Vec<String>,
     moments: Vec<String>,
+    breakpoints: Vec<String>,
+    displays: Vec<String>,
 }
 
 /// The names of a program at a moment.
-pub(super) fn names(module: &Module, session: &Session<'_, Sim>) -> Names {
+pub(super) fn names(front: &Front<'_>) -> Names {
+    let (module, session) = (front.module, &front.session);
     let hidden = [FunctionKind::Start, FunctionKind::Replacement];
     let functions = module.functions.iter().filter(|function| !hidden.contains(&function.kind));
     let functions = functions.map(|function| function.name.clone());
     let checkpoints = module.checkpoints.iter().cloned();
     let errors = module.errors.iter().map(|error| format!("error {}", error.name));
-    let frame = session.frames().len().saturating_sub(1);
-    let variables = session.locals(frame).into_iter().chain(session.globals());
+    let locals = front.call().map_or(Vec::new(), |call| session.locals(call.index));
+    let variables = locals.into_iter().chain(session.globals());
     let lines = module.mentions.iter().filter_map(|mention| match &mention.what {
         Mentioned::Output { name, .. } => Some(format!("output {name}")),
         Mentioned::Input { name, .. } => Some(format!("input {name}")),
@@ -43,6 +46,8 @@ pub(super) fn names(module: &Module, session: &Session<'_, Sim>) -> Names {
             .chain(plain.map(str::to_owned))
             .collect(),
         moments: words.into_iter().chain(marks).chain(checkpoints).collect(),
+        breakpoints: session.breakpoints().iter().map(|it| it.id.to_string()).collect(),
+        displays: front.displays.numbers().map(|number| number.to_string()).collect(),
     }
 }
 
@@ -72,11 +77,14 @@ impl Completer {
             let mut commands = table::COMMANDS.iter().map(|command| command.names[0]);
             return (begin, fitting(&mut commands));
         }
-        let word = line.split_whitespace().next().unwrap_or("");
+        let word = line.split([' ', '\t', '/']).next().unwrap_or("");
         let offers = table::find(word).map_or(Offers::Nothing, |command| command.offers);
         let names = match offers {
             Offers::Nothing => return (begin, Vec::new()),
             Offers::Commands => return (begin, fitting(&mut table::names())),
+            Offers::Info => return (begin, fitting(&mut INFO.into_iter())),
+            Offers::Breakpoints => &self.names.breakpoints,
+            Offers::Displays => &self.names.displays,
             Offers::Places => &self.names.places,
             Offers::Values => &self.names.values,
             Offers::Moments => &self.names.moments,
@@ -117,6 +125,8 @@ mod tests {
                 places: vec!["main".to_owned(), "insert".to_owned()],
                 values: vec!["force".to_owned()],
                 moments: vec!["start".to_owned()],
+                breakpoints: vec!["1".to_owned(), "2".to_owned()],
+                displays: vec!["3".to_owned()],
             },
         };
         let of = |line| completer.candidates(line);
@@ -127,6 +137,11 @@ mod tests {
         assert_eq!(of("b in"), (2, vec!["insert".to_owned()]));
         assert_eq!(of("p f"), (2, vec!["force".to_owned()]));
         assert_eq!(of("goto "), (5, vec!["start".to_owned()]));
+        assert_eq!(of("condition "), (10, vec!["1".to_owned(), "2".to_owned()]));
+        assert_eq!(of("undisplay "), (10, vec!["3".to_owned()]));
+        assert_eq!(of("info dis"), (5, vec!["display".to_owned()]));
+        assert_eq!(of("x/5i ma"), (5, vec!["main".to_owned()]));
+        assert_eq!(of("un"), (0, vec!["undisplay".to_owned(), "undo".into(), "until".into()]));
         assert_eq!(of("step "), (5, Vec::new()));
         assert_eq!(of("nonsense x"), (9, Vec::new()));
     }

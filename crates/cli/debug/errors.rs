@@ -3,8 +3,9 @@
 
 use super::{Answer, Done, Front, walk};
 use crate::report;
-use obverse_debugger::{Halt, Mode};
+use obverse_debugger::{Halt, Mode, Session};
 use obverse_recovery::{Ending, Intended, Intent};
+use obverse_sim::Sim;
 use obverse_vm::{Direction, Stop};
 use serde_json::{Value, json};
 
@@ -13,7 +14,17 @@ const HELD: &str = "the arm is held: nothing moves before a `release`";
 
 pub(super) fn recover(front: &mut Front<'_>, _: &str) -> Done {
     let names = front.breakpoint_names();
-    let halt = front.session.recover().map_err(|why| why.to_string())?;
+    let mut declined = None;
+    let halt = front.drive(|session| match session.recover() {
+        Ok(halt) => halt,
+        Err(why) => {
+            declined = Some(why);
+            Halt::Done
+        }
+    });
+    if let Some(why) = declined {
+        return Err(why.to_string());
+    }
     Ok(walk::walked(front, &halt, Direction::Forward, &names))
 }
 
@@ -25,7 +36,24 @@ pub(super) fn release(front: &mut Front<'_>, _: &str) -> Done {
     Ok(Answer::line("the arm may move again; nothing has moved"))
 }
 
-impl Front<'_> {
+impl<'p> Front<'p> {
+    /// Go on. An arm that a stop holds is released first, as often as that was allowed beforehand
+    /// and the run goes on then.
+    pub(super) fn drive(&mut self, mut go: impl FnMut(&mut Session<'p, Sim>) -> Halt) -> Halt {
+        loop {
+            let halt = go(&mut self.session);
+            if halt != Halt::Held || !self.releases() || self.session.release().is_err() {
+                return halt;
+            }
+            self.releases_left -= 1;
+        }
+    }
+
+    /// Whether going on releases an arm that is held. What is only tried, or is by hand, does not.
+    fn releases(&self) -> bool {
+        self.releases_left > 0 && self.session.tries() == 0 && !self.session.is_over()
+    }
+
     /// An error that is due: what the program wants done, and who does it.
     pub(super) fn due_words(&mut self, error: usize, pc: u32) -> Vec<String> {
         let (module, name) = (self.module, &self.module.errors[error].name);
@@ -48,7 +76,10 @@ impl Front<'_> {
             true => "the run ends in this; `continue` tries it again",
             false => "`continue` goes on as the program says",
         };
-        let held = (is_live && self.session.is_held()).then(|| HELD.to_owned());
+        let held = (is_live && self.session.is_held()).then(|| match self.releases() {
+            true => format!("the arm is held; going on releases it ({} left)", self.releases_left),
+            false => HELD.to_owned(),
+        });
         let then = (is_live && direction == Direction::Forward).then(|| then.to_owned());
         held.into_iter().chain(then).collect()
     }
@@ -69,6 +100,12 @@ impl Front<'_> {
 /// Why a run ended or does not move, in words.
 pub(super) fn halted(front: &Front<'_>, halt: &Halt) -> Vec<String> {
     match halt {
+        Halt::Ended(ending @ Ending::GivenUp { .. }) => vec![
+            report::ending_words(front.module, ending),
+            "the run ends here, and a person is called: `reverse-next` goes back by hand, `goto` \
+             and `last` show what was"
+                .to_owned(),
+        ],
         Halt::Ended(ending) => vec![report::ending_words(front.module, ending)],
         _ => vec![HELD.to_owned()],
     }
@@ -78,7 +115,7 @@ pub(super) fn halted(front: &Front<'_>, halt: &Halt) -> Vec<String> {
 pub(super) fn intent(front: &mut Front<'_>, halt: &Halt) -> Value {
     let is_due = matches!(halt, Halt::Stopped(Stop::Due { .. }));
     let Some(intent) = front.session.intent().filter(|_| is_due) else { return Value::Null };
-    let Intent { incident, what } = &intent;
+    let Intent { incident, what, .. } = &intent;
     let mut object = json!({
         "error": obverse_recovery::name(front.module, incident),
         "attempts": incident.attempts.len(),

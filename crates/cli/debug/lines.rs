@@ -2,7 +2,7 @@
 //! shown behind the prompt as if they had been typed.
 
 use super::complete::{Completer, Names};
-use crate::problem::{Problem, plain};
+use crate::problem::{Message, Problem, plain};
 use crate::write;
 use rustyline::error::ReadlineError;
 use rustyline::history::MemHistory;
@@ -18,6 +18,8 @@ const MAX_LINE: u64 = 4096;
 pub(super) enum Line {
     /// A command without the blanks around it. From a terminal, it may be empty.
     Text(String),
+    /// A line that is no command, and why.
+    Bad(String),
     /// There is no more.
     End,
 }
@@ -79,7 +81,18 @@ impl Lines {
         match self {
             Self::Terminal(editor) => Ok(typed(editor, prompt)),
             Self::Text { from, number, name, is_shown } => loop {
-                let Some(text) = read(from, number, name)? else { return Ok(Line::End) };
+                *number += 1;
+                let line = read(from).map_err(|error| unreadable(name, *number, &error))?;
+                let text = match line {
+                    Raw::End => return Ok(Line::End),
+                    Raw::Bad(why) => {
+                        if *is_shown {
+                            write::line(prompt.trim_end());
+                        }
+                        return Ok(Line::Bad(format!("line {number} of {name} is {why}")));
+                    }
+                    Raw::Text(text) => text,
+                };
                 // A remark is shown, too: it is for who reads what was said.
                 if *is_shown && !text.is_empty() {
                     write::line(&format!("{prompt}{text}"));
@@ -110,26 +123,59 @@ fn typed(editor: &mut Editor<Completer, MemHistory>, prompt: &str) -> Line {
     }
 }
 
-/// A line of a text, none behind its end.
-fn read(
-    from: &mut Box<dyn BufRead>,
-    number: &mut usize,
-    name: &str,
-) -> Result<Option<String>, Problem> {
-    *number += 1;
-    let wrong = |why: String| {
-        let message = crate::problem::Message::new(why).at(Some((*number, 1)));
-        Problem::several(vec![crate::problem::Message { file: Some(name.to_owned()), ..message }])
-    };
+fn unreadable(name: &str, number: usize, error: &std::io::Error) -> Problem {
+    let message = Message::new(plain(error)).at(Some((number, 1)));
+    Problem::several(vec![Message { file: Some(name.to_owned()), ..message }])
+}
+
+/// A line of a text.
+#[derive(Debug, PartialEq)]
+enum Raw {
+    Text(String),
+    /// What is there in place of a command.
+    Bad(String),
+    End,
+}
+
+/// The next line. One that is too long is gone over to its end, and not kept.
+fn read(from: &mut impl BufRead) -> std::io::Result<Raw> {
     let mut bytes = Vec::new();
-    let read = from.take(MAX_LINE + 1).read_until(b'\n', &mut bytes);
-    read.map_err(|error| wrong(plain(&error)))?;
-    if bytes.len() as u64 > MAX_LINE {
-        return Err(wrong(format!("a command is no longer than {MAX_LINE} bytes")));
+    if from.take(MAX_LINE).read_until(b'\n', &mut bytes)? == 0 {
+        return Ok(Raw::End);
     }
-    if bytes.is_empty() {
-        return Ok(None);
+    let is_whole = bytes.ends_with(b"\n");
+    // What is missing of a line of just this length is its end.
+    if !is_whole && from.skip_until(b'\n')? > 1 {
+        return Ok(Raw::Bad(format!("longer than the {MAX_LINE} bytes of a command")));
     }
-    let text = String::from_utf8(bytes).map_err(|_| wrong("this is no text".to_owned()))?;
-    Ok(Some(text.trim().to_owned()))
+    Ok(match String::from_utf8(bytes) {
+        Ok(text) => Raw::Text(text.trim().to_owned()),
+        Err(_) => Raw::Bad("no text: its bytes are not UTF-8".to_owned()),
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn all(mut bytes: &[u8]) -> Vec<Raw> {
+        std::iter::from_fn(|| read(&mut bytes).ok().filter(|line| *line != Raw::End)).collect()
+    }
+
+    #[test]
+    fn a_bad_line_is_one_line_and_the_next_is_read() {
+        let text = |text: &str| Raw::Text(text.to_owned());
+        let most = "x".repeat(MAX_LINE as usize);
+        assert_eq!(all(format!("{most}\nstep\n").as_bytes()), [text(&most), text("step")]);
+        assert_eq!(all(most.as_bytes()), [text(&most)]);
+        for more in [1, 4096, 100_000] {
+            let long = "x".repeat(MAX_LINE as usize + more);
+            let read = all(format!("{long}\nstep").as_bytes());
+            assert!(matches!(&read[0], Raw::Bad(why) if why.contains("longer")), "{more}");
+            assert_eq!(read[1..], [text("step")]);
+        }
+        let read = all(b"\xff\n\nstep\n");
+        assert!(matches!(&read[0], Raw::Bad(why) if why.contains("UTF-8")));
+        assert_eq!(read[1..], [text(""), text("step")]);
+    }
 }

@@ -1,16 +1,20 @@
 //! The debugger at a terminal: commands in words, answers in words or as JSON Lines.
 //!
-//! Reading order: [`table`], the commands; [`lines`], where they come from; `walk`, `errors`,
-//! `stops`, `values`, `code` and `tries`, what each does with the session; `complete`, what the
-//! line editor offers. It knows words and columns, and nothing of how a moment is reached.
+//! Reading order: [`table`], the commands; [`lines`], where they come from; `walk`, `until`,
+//! `errors`, `stops`, `values`, `frames`, `displays`, `code` and `tries`, what each does with the
+//! session; `complete`, what the line editor offers. It knows words and columns, and nothing of how
+//! a moment is reached.
 
 mod code;
 mod complete;
+mod displays;
 mod errors;
+mod frames;
 mod lines;
 mod stops;
 mod table;
 mod tries;
+mod until;
 mod values;
 mod walk;
 
@@ -19,9 +23,11 @@ pub(crate) use lines::Lines;
 use crate::commands::reach::margin::Margin;
 use crate::problem::Problem;
 use crate::{recovering, show, write};
+use code::Listed;
+use displays::Displays;
 use lines::Line;
 use obverse_bytecode::Module;
-use obverse_debugger::{Position, Session};
+use obverse_debugger::{Mode, Session};
 use obverse_recovery::Memory;
 use obverse_sim::Sim;
 use serde_json::{Map, Value, json};
@@ -74,18 +80,33 @@ pub(crate) struct Front<'p> {
     module: &'p Module,
     margin: Margin,
     face: Face,
-    /// The file and the line behind what was listed last.
-    listed: Option<(u16, usize)>,
+    listed: Option<Listed>,
+    /// How far out the call is that is looked at, from the innermost.
+    selected: usize,
+    displays: Displays,
+    /// How often an arm that is held is still released without a command.
+    releases_left: u32,
     /// Whether it was told once how one goes on from an error.
     is_told_how: bool,
     is_over: bool,
 }
 
 impl<'p> Front<'p> {
-    pub(crate) fn over(session: Session<'p, Sim>, face: Face) -> Self {
+    pub(crate) fn over(session: Session<'p, Sim>, face: Face, releases: u32) -> Self {
         let module = session.module();
         let margin = Margin::of(module);
-        Self { session, module, margin, face, listed: None, is_told_how: false, is_over: false }
+        Self {
+            session,
+            module,
+            margin,
+            face,
+            listed: None,
+            selected: 0,
+            displays: Displays::default(),
+            releases_left: releases,
+            is_told_how: false,
+            is_over: false,
+        }
     }
 
     /// What was learned of errors.
@@ -104,11 +125,16 @@ impl<'p> Front<'p> {
         }
         let mut last = String::new();
         while !self.is_over {
-            lines.offer(|| complete::names(self.module, &self.session));
+            lines.offer(|| complete::names(self));
             let line = match lines.next(&self.prompt())? {
                 Line::End => break,
                 // As people know it: nothing is the last command again.
                 Line::Text(text) if text.is_empty() => last.clone(),
+                Line::Bad(why) => {
+                    failed += 1;
+                    self.tell("", Err(why));
+                    continue;
+                }
                 Line::Text(text) => text,
             };
             if line.is_empty() {
@@ -128,7 +154,7 @@ impl<'p> Front<'p> {
                 "failed": failed,
                 "held": self.session.is_held(),
                 "incidents": recovering::incidents(self.module, self.session.incidents()),
-                "position": position(&self.session.position()),
+                "position": self.position(),
             });
             write::line(&summary.to_string());
         }
@@ -136,7 +162,9 @@ impl<'p> Front<'p> {
     }
 
     fn obey(&mut self, line: &str) -> Done {
-        let (word, rest) = line.split_once(char::is_whitespace).unwrap_or((line, ""));
+        // What follows a stroke follows the name: `x/5i`.
+        let is_end = |c: char| c.is_whitespace() || c == '/';
+        let (word, rest) = line.split_at(line.find(is_end).unwrap_or(line.len()));
         let command = table::find(word)?;
         (command.run)(self, rest.trim())
     }
@@ -158,7 +186,7 @@ impl<'p> Front<'p> {
             "command": line,
             "done": done.is_ok(),
             "told": told,
-            "position": position(&self.session.position()),
+            "position": self.position(),
         });
         match done {
             Ok(answer) => {
@@ -179,26 +207,42 @@ impl<'p> Front<'p> {
         }
     }
 
-    /// `(17 rewound) `
+    /// `(17 rewound) `, `(17 what-if rewound) `, and of one within another `(17 what-if 2) `.
     fn prompt(&self) -> String {
-        format!("({} {}) ", self.session.moment(), self.session.mode().name())
+        let mode = self.session.mode();
+        let mut words = match self.session.tries() {
+            0 => mode.name().to_owned(),
+            1 => Mode::WhatIf.name().to_owned(),
+            tries => format!("{} {tries}", Mode::WhatIf.name()),
+        };
+        if self.session.tries() > 0 && mode == Mode::Rewound {
+            words = format!("{words} {}", mode.name());
+        }
+        format!("({} {words}) ", self.session.moment())
     }
-}
 
-/// A position for machines.
-fn position(position: &Position) -> Value {
-    let place = position.place.as_ref();
-    json!({
-        "mode": position.mode.name(),
-        "moment": position.moment.0,
-        "end": position.end.0,
-        "steps": position.steps,
-        "instruction": position.pc,
-        "file": place.map(|place| &place.file),
-        "line": place.map(|place| place.line),
-        "column": place.map(|place| place.column),
-        "function": position.function,
-        "calls": position.depth,
-        "time_s": position.now_s,
-    })
+    /// Another moment is shown: nothing of it was looked at yet.
+    fn moved(&mut self) {
+        (self.listed, self.selected) = (None, 0);
+    }
+
+    /// Where the session stands, for machines.
+    fn position(&self) -> Value {
+        let position = self.session.position();
+        let place = position.place.as_ref();
+        json!({
+            "mode": position.mode.name(),
+            "tries": self.session.tries(),
+            "moment": position.moment.0,
+            "end": position.end.0,
+            "steps": position.steps,
+            "instruction": position.pc,
+            "file": place.map(|place| &place.file),
+            "line": place.map(|place| place.line),
+            "column": place.map(|place| place.column),
+            "function": position.function,
+            "calls": position.depth,
+            "time_s": position.now_s,
+        })
+    }
 }

@@ -1,10 +1,10 @@
 //! Breakpoints and watches.
 
-use super::{Answer, Done, Front, values, walk};
-use obverse_debugger::{Breakpoint, Expression, Places, What};
+use super::{Answer, Done, Front, displays, frames, values, walk};
+use obverse_debugger::{Breakpoint, Declined, Expression, Places, What};
 use obverse_vm::Direction;
 use serde_json::{Value, json};
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 /// Something and the condition behind it.
 fn split_if(text: &str) -> (&str, Option<&str>) {
@@ -15,7 +15,7 @@ fn split_if(text: &str) -> (&str, Option<&str>) {
 }
 
 /// The places of a name; and, of a line without code, what is to be said.
-fn places(front: &Front<'_>, text: &str) -> Result<(Places, Option<String>), String> {
+pub(super) fn places(front: &Front<'_>, text: &str) -> Result<(Places, Option<String>), String> {
     let module = front.module;
     let said = |why: obverse_debugger::PlaceError| why.to_string();
     if let Some(name) = text.strip_prefix("error ") {
@@ -45,22 +45,25 @@ fn places(front: &Front<'_>, text: &str) -> Result<(Places, Option<String>), Str
     Ok((found, told))
 }
 
+/// The same, with where the session stands if none is named, and whether it is the place behind.
+fn placed(front: &Front<'_>, text: &str) -> Result<(Places, Option<String>, bool), String> {
+    let (what, is_after) = match text.strip_prefix("after ") {
+        Some(what) => (what.trim(), true),
+        None => (text, false),
+    };
+    if !what.is_empty() {
+        let (found, told) = places(front, what)?;
+        return Ok((found, told, is_after));
+    }
+    let here = front.session.machine().state().pc();
+    let here = Places::of_instruction(front.module, here).map_err(|why| why.to_string())?;
+    Ok((here, None, is_after))
+}
+
 pub(super) fn add(front: &mut Front<'_>, rest: &str, is_temporary: bool) -> Done {
     let (what, condition) = split_if(rest);
-    let (what, is_after) = match what.strip_prefix("after ") {
-        Some(what) => (what.trim(), true),
-        None => (what, false),
-    };
-    let (mut places, told) = match what {
-        "" => (
-            Places::of_instruction(front.module, front.session.machine().state().pc())
-                .map_err(|why| why.to_string())?,
-            None,
-        ),
-        _ => places(front, what)?,
-    };
-    let function = places.pcs.first().and_then(|pc| front.module.function_at(*pc)).unwrap_or(0);
-    let condition = condition_of(front, function, condition)?;
+    let (mut places, told, is_after) = placed(front, what)?;
+    let condition = condition_of(front, function_of(front, &places.pcs), condition)?;
     if is_after {
         places.name = format!("after {}", places.name);
     }
@@ -73,6 +76,11 @@ pub(super) fn add(front: &mut Front<'_>, rest: &str, is_temporary: bool) -> Done
     let mut lines: Vec<String> = told.into_iter().collect();
     lines.push(format!("breakpoint {id}: {name}"));
     Ok(Answer::lines(lines).with("breakpoint", id))
+}
+
+/// The function whose names hold at places.
+fn function_of(front: &Front<'_>, pcs: &BTreeSet<u32>) -> usize {
+    pcs.first().and_then(|pc| front.module.function_at(*pc)).unwrap_or(0)
 }
 
 fn condition_of(
@@ -114,28 +122,116 @@ pub(super) fn ignore(front: &mut Front<'_>, rest: &str) -> Done {
     Ok(Answer::line(format!("breakpoint {id} is let pass {count} times")))
 }
 
-pub(super) fn delete(front: &mut Front<'_>, rest: &str) -> Done {
-    let ids: Vec<u32> = match rest {
-        "all" => front.session.breakpoints().iter().map(|it| it.id).collect(),
-        "" => return Err("say which breakpoint, or `all`".to_owned()),
-        _ => vec![number(rest)?],
-    };
-    for id in ids {
-        front.session.drop_breakpoint(id).map_err(|why| why.to_string())?;
+/// Breakpoints of these numbers, each of which there is, or all.
+fn numbers(front: &Front<'_>, text: &str) -> Result<Vec<u32>, String> {
+    let known = || front.session.breakpoints().iter().map(|it| it.id);
+    if matches!(text, "" | "all") {
+        return Ok(known().collect());
     }
+    let numbers = text.split_whitespace().map(|text| {
+        let id = number(text)?;
+        match known().any(|known| known == id) {
+            true => Ok(id),
+            false => Err(Declined::NoBreakpoint(id).to_string()),
+        }
+    });
+    numbers.collect()
+}
+
+fn drop_all(front: &mut Front<'_>, ids: &[u32]) -> Result<(), String> {
+    ids.iter().try_for_each(|id| front.session.drop_breakpoint(*id).map_err(|why| why.to_string()))
+}
+
+pub(super) fn delete(front: &mut Front<'_>, rest: &str) -> Done {
+    if rest.is_empty() {
+        return Err("say which breakpoint, or `all`".to_owned());
+    }
+    let ids = numbers(front, rest)?;
+    drop_all(front, &ids)?;
     Ok(Answer::default())
 }
+
+/// Drop the breakpoints at a place.
+pub(super) fn clear(front: &mut Front<'_>, rest: &str) -> Done {
+    let (place, _, behind) = placed(front, rest)?;
+    let is_there = |it: &&Breakpoint| match &it.what {
+        What::Places { pcs, is_after, .. } => *is_after == behind && pcs.is_subset(&place.pcs),
+        What::Change(_) => false,
+    };
+    let all = front.session.breakpoints().iter();
+    let ids: Vec<u32> = all.filter(is_there).map(|it| it.id).collect();
+    if ids.is_empty() {
+        return Err(format!("there is no breakpoint at {}", place.name));
+    }
+    drop_all(front, &ids)?;
+    let lines = ids.iter().map(|id| format!("breakpoint {id} is gone")).collect();
+    Ok(Answer::lines(lines).with("breakpoints", ids))
+}
+
+/// Let breakpoints stop a run, or not for now; all of them, if none is named.
+pub(super) fn switch(front: &mut Front<'_>, rest: &str, is_enabled: bool) -> Done {
+    let ids = numbers(front, rest)?;
+    if ids.is_empty() {
+        return Err("there are no breakpoints".to_owned());
+    }
+    for id in &ids {
+        let switch = |it: &mut Breakpoint| it.is_enabled = is_enabled;
+        front.session.change_breakpoint(*id, switch).map_err(|why| why.to_string())?;
+    }
+    let state = if is_enabled { "stops runs again" } else { "stops nothing for now" };
+    let lines = ids.iter().map(|id| format!("breakpoint {id} {state}")).collect();
+    Ok(Answer::lines(lines).with("breakpoints", ids))
+}
+
+/// Give a breakpoint a condition, or take it away.
+pub(super) fn condition(front: &mut Front<'_>, rest: &str) -> Done {
+    let (id, text) = rest.split_once(char::is_whitespace).unwrap_or((rest, ""));
+    if id.is_empty() {
+        return Err("say which breakpoint, and the condition; none takes it away".to_owned());
+    }
+    let id = number(id)?;
+    let found = front.session.breakpoints().iter().find(|it| it.id == id);
+    let function = match found.map(|it| &it.what) {
+        None => return Err(Declined::NoBreakpoint(id).to_string()),
+        Some(What::Places { pcs, .. }) => function_of(front, pcs),
+        Some(What::Change(_)) => front.function(),
+    };
+    let text = text.trim();
+    let text = text.strip_prefix("if ").unwrap_or(text).trim();
+    let condition = condition_of(front, function, Some(text).filter(|text| !text.is_empty()))?;
+    let change = |it: &mut Breakpoint| it.condition = condition;
+    front.session.change_breakpoint(id, change).map_err(|why| why.to_string())?;
+    Ok(Answer::line(match text {
+        "" => format!("breakpoint {id} stops always"),
+        text => format!("breakpoint {id} stops only if {text}"),
+    }))
+}
+
+/// What `info` knows of.
+pub(super) const INFO: [&str; 9] = [
+    "bookmarks",
+    "breakpoints",
+    "display",
+    "frame",
+    "globals",
+    "history",
+    "locals",
+    "stack",
+    "state",
+];
 
 pub(super) fn info(front: &mut Front<'_>, rest: &str) -> Done {
     match rest {
         "breakpoints" | "break" | "b" | "watchpoints" => Ok(breakpoints(front)),
         "bookmarks" => Ok(walk::bookmarks(front)),
+        "display" => Ok(displays::info(front)),
+        "frame" | "f" => frames::info(front),
         "locals" => values::locals(front, ""),
         "globals" | "variables" => values::globals(front, ""),
-        "frame" | "stack" => values::backtrace(front, ""),
+        "stack" | "s" => frames::backtrace(front, ""),
         "state" | "registers" => values::state(front, ""),
         "history" => values::history(front, ""),
-        _ => Err("say breakpoints, bookmarks, frame, locals, globals, state or history".to_owned()),
+        _ => Err(format!("say of what: {}", INFO.join(", "))),
     }
 }
 
@@ -153,6 +249,7 @@ fn breakpoints(front: &Front<'_>) -> Answer {
                 "condition": it.condition.as_ref().map(Expression::text),
                 "hits": it.hits,
                 "temporary": it.is_temporary,
+                "enabled": it.is_enabled,
             })
         })
         .collect();
@@ -182,6 +279,9 @@ fn words(it: &Breakpoint) -> String {
     }
     if it.is_temporary {
         words += ", once";
+    }
+    if !it.is_enabled {
+        words += ", disabled";
     }
     if it.hits > 0 {
         words += &format!(", come to {}", counted(it.hits));

@@ -7,13 +7,12 @@ pub(super) fn what_if(front: &mut Front<'_>, _: &str) -> Done {
     front.session.what_if().map_err(|why| why.to_string())?;
     let hint = "what follows is tried in a copy of the workcell: `set`, `input` and `seed` change \
                 it, `leave` drops it";
-    Ok(Answer::lines(vec![hint.to_owned(), front.place_line()]))
+    Ok(front.jumped(vec![hint.to_owned()]))
 }
 
 pub(super) fn leave(front: &mut Front<'_>, _: &str) -> Done {
     front.session.leave_what_if().map_err(|why| why.to_string())?;
-    front.listed = None;
-    Ok(Answer::line(front.place_line()))
+    Ok(front.jumped(Vec::new()))
 }
 
 pub(super) fn set(front: &mut Front<'_>, rest: &str) -> Done {

@@ -1,7 +1,7 @@
 //! What there is at the moment that is shown: variables, the workcell, calls, history, the tape,
 //! and what stops going back.
 
-use super::{Answer, Done, Front};
+use super::{Answer, Done, Front, frames};
 use crate::commands::reach::margin;
 use crate::{report, story};
 use obverse_debugger::session::{Action, Variable};
@@ -17,7 +17,7 @@ const MAX_HISTORY: usize = 10_000;
 /// How many marks a gauge has.
 const GAUGE: usize = 24;
 
-fn json_of(value: &Value) -> Json {
+pub(super) fn json_of(value: &Value) -> Json {
     match value {
         Value::Int(value) => json!(value),
         Value::Real(value) => json!(value),
@@ -43,8 +43,7 @@ fn listed(variables: &[Variable], none: &str) -> Answer {
 
 pub(super) fn print(front: &mut Front<'_>, rest: &str) -> Done {
     if rest.is_empty() {
-        let frame = front.session.frames().len().saturating_sub(1);
-        let mut all = front.session.locals(frame);
+        let mut all = front.call().map_or(Vec::new(), |call| front.session.locals(call.index));
         all.extend(front.session.globals());
         return Ok(listed(&all, "there are no variables here"));
     }
@@ -54,44 +53,14 @@ pub(super) fn print(front: &mut Front<'_>, rest: &str) -> Done {
 }
 
 pub(super) fn locals(front: &mut Front<'_>, rest: &str) -> Done {
-    let innermost = front.session.frames().len().saturating_sub(1);
-    // Frames are counted from the innermost, as `backtrace` does.
-    let frame = match rest.parse::<usize>() {
-        _ if rest.is_empty() => innermost,
-        Ok(number) if number <= innermost => innermost - number,
-        _ => return Err(format!("`{rest}` is no call: they are numbered from 0 to {innermost}")),
-    };
-    Ok(listed(&front.session.locals(frame), "this call has no variables"))
+    let number = frames::numbered(front, rest)?;
+    let call = front.calls().into_iter().nth(number);
+    let locals = call.map_or(Vec::new(), |call| front.session.locals(call.index));
+    Ok(listed(&locals, "this call has no variables"))
 }
 
 pub(super) fn globals(front: &mut Front<'_>, _: &str) -> Done {
     Ok(listed(&front.session.globals(), "the program has no variables"))
-}
-
-pub(super) fn backtrace(front: &mut Front<'_>, _: &str) -> Done {
-    let frames = front.session.frames();
-    let line = |(number, frame): (usize, &obverse_debugger::session::FrameView)| {
-        let place = report::line_of(front.module, frame.pc);
-        let place = frame.place.as_ref().map_or(place, |at| format!("{}:{}", at.file, at.line));
-        match frame.index {
-            0 => format!("#{number} the start"),
-            _ => format!("#{number} {} at {place}", frame.name),
-        }
-    };
-    let lines = frames.iter().rev().enumerate().map(line).collect();
-    let data: Vec<Json> = frames
-        .iter()
-        .rev()
-        .map(|frame| {
-            json!({
-                "function": frame.name,
-                "instruction": frame.pc,
-                "file": frame.place.as_ref().map(|place| &place.file),
-                "line": frame.place.as_ref().map(|place| place.line),
-            })
-        })
-        .collect();
-    Ok(Answer::lines(lines).with("frames", data))
 }
 
 /// A gauge of a number between two others.
@@ -283,4 +252,9 @@ pub(super) fn why(front: &mut Front<'_>, _: &str) -> Done {
         })
     });
     Ok(Answer::lines(lines).with("never", never).with("ends", ends).with("actions", why.actions))
+}
+
+/// The unit of a value for machines.
+pub(super) fn unit_of(_: &Value) -> Option<String> {
+    None
 }

@@ -4,7 +4,7 @@ use super::{Answer, Done, Front, errors};
 use crate::report;
 use obverse_bytecode::FunctionKind;
 use obverse_debugger::recording::Moment;
-use obverse_debugger::{Change, Expression, Grain, Halt, Mode, Walk};
+use obverse_debugger::{Change, Grain, Halt, Mode, Walk};
 use obverse_recovery::drive::ending;
 use obverse_vm::{Direction, Stop};
 use serde_json::{Value, json};
@@ -30,7 +30,7 @@ pub(super) fn go(front: &mut Front<'_>, rest: &str, direction: Direction, walk: 
     for made in 0..count {
         halt = match direction {
             Direction::Forward => front.go_on(walk),
-            Direction::Reverse => front.session.go(direction, walk),
+            Direction::Reverse => front.drive(|session| session.go(direction, walk)),
         };
         let goes_on = match walk {
             Walk::Continue => matches!(halt, Halt::Hits(_) | Halt::Stopped(Stop::Due { .. })),
@@ -50,7 +50,7 @@ pub(super) fn walked(
     direction: Direction,
     names: &BTreeMap<u32, String>,
 ) -> Answer {
-    front.listed = None;
+    front.moved();
     let mut lines = front.halt_words(halt, direction, names);
     lines.push(front.place_line());
     let is_recovering = front.session.is_recovering();
@@ -65,7 +65,7 @@ pub(super) fn walked(
     if let Some(refusal) = halt.refusal() {
         answer = answer.with("stopped_at", report::place(front.module, Some(refusal.pc)));
     }
-    answer
+    front.shown(answer)
 }
 
 /// Why a walk ended, for machines.
@@ -163,7 +163,7 @@ impl Front<'_> {
             _ => (false, walk),
         };
         loop {
-            let halt = self.session.go(Direction::Forward, walk);
+            let halt = self.drive(|session| session.go(Direction::Forward, walk));
             if !is_start || halt != Halt::Done || !self.is_in_start() {
                 return halt;
             }
@@ -171,15 +171,16 @@ impl Front<'_> {
     }
 
     fn is_in_start(&self) -> bool {
-        let kind = self.module.functions.get(self.function()).map(|function| function.kind);
-        kind == Some(FunctionKind::Start)
+        let here = self.module.function_at(self.session.machine().state().pc());
+        let function = here.and_then(|index| self.module.functions.get(index));
+        function.is_some_and(|function| function.kind == FunctionKind::Start)
     }
 
     /// What a jump led to.
-    fn jumped(&mut self, mut lines: Vec<String>) -> Answer {
-        self.listed = None;
+    pub(super) fn jumped(&mut self, mut lines: Vec<String>) -> Answer {
+        self.moved();
         lines.push(self.place_line());
-        Answer::lines(lines)
+        self.shown(Answer::lines(lines))
     }
 }
 
@@ -267,17 +268,6 @@ pub(super) fn bookmarks(front: &Front<'_>) -> Answer {
 }
 
 impl Front<'_> {
-    /// An expression whose names are those of where the session stands.
-    pub(super) fn expression(&self, text: &str) -> Result<Expression, String> {
-        let function = self.function();
-        Expression::parse(self.module, function, text).map_err(|why| why.to_string())
-    }
-
-    /// The function that the session stands in.
-    pub(super) fn function(&self) -> usize {
-        self.module.function_at(self.session.machine().state().pc()).unwrap_or(0)
-    }
-
     /// Whether something is tried, which alone can be changed by hand.
     pub(super) fn require_try(&self) -> Result<(), String> {
         match self.session.mode() {

@@ -74,6 +74,7 @@ struct Left<'p, C> {
     standing: Standing<'p>,
     /// The moment of it that was shown.
     shown: Option<Moment>,
+    bookmarks: BTreeMap<String, Moment>,
 }
 
 /// Why a command was not carried out; nothing has changed.
@@ -378,7 +379,11 @@ impl<'p, C: Workcell> Session<'p, C> {
             std::mem::replace(&mut self.run, run),
             std::mem::replace(&mut self.standing, standing),
         );
-        self.left.push(Left { run, standing, shown });
+        let bookmarks = self.bookmarks.clone();
+        // What came later comes no more.
+        let end = self.run.recording().end;
+        self.bookmarks.retain(|_, moment| *moment <= end);
+        self.left.push(Left { run, standing, shown, bookmarks });
         self.jumps.clear();
         Ok(())
     }
@@ -388,8 +393,9 @@ impl<'p, C: Workcell> Session<'p, C> {
     /// # Errors
     /// If nothing is tried.
     pub fn leave_what_if(&mut self) -> Result<(), Declined> {
-        let Left { run, standing, shown } = self.left.pop().ok_or(Declined::NoWhatIf)?;
-        (self.run, self.standing) = (run, standing);
+        let left = self.left.pop().ok_or(Declined::NoWhatIf)?;
+        let Left { run, standing, shown, bookmarks } = left;
+        (self.run, self.standing, self.bookmarks) = (run, standing, bookmarks);
         self.view = None;
         self.jumps.clear();
         self.show(shown);

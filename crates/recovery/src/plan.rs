@@ -231,6 +231,7 @@ impl<'p, C: Workcell> Run<'_, 'p, '_, C> {
             Ok(Plan::InPlace { .. } | Plan::Restart) => Intended::InPlace,
             Err(why) => Intended::GiveUp(why),
         };
-        Intent { incident: self.at.open[index].clone(), what }
+        let goes_on = self.recovery.strategy.goes_on_when_given_up();
+        Intent { incident: self.at.open[index].clone(), what, goes_on }
     }
 }

@@ -135,6 +135,8 @@ pub struct Intent {
     pub incident: Incident,
     /// What will be done.
     pub what: Intended,
+    /// Whether the program goes on where it is given up; else a person is called.
+    pub goes_on: bool,
 }
 
 /// What will be done about an error that is due.

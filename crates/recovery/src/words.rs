@@ -130,6 +130,7 @@ impl Intent {
             Intended::GiveUp(why) => {
                 let error = &module.errors[self.incident.error.index()];
                 let then = match error.otherwise {
+                    _ if !self.goes_on => "an operator is called".to_owned(),
                     Otherwise::Using(_) => sequence_name(module, &self.incident).to_owned(),
                     Otherwise::Operator => "an operator is called".to_owned(),
                     Otherwise::Stop => "the program stops".to_owned(),

@@ -57,15 +57,14 @@ impl Teller for Story {
 /// # Panics
 /// If it is not so.
 pub fn is_a_run(u: &mut Unstructured<'_>) -> Result<bool> {
-    // Those that command beside the program ask for a person at once.
-    let strategies = STRATEGIES.map(|it| match it {
-        Strategy::BackUp { .. } => Strategy::Declared,
-        other => other,
-    });
-    let strategy = *u.choose(&strategies)?;
+    let strategy = *u.choose(&STRATEGIES)?;
     let fraction = f64::from(u.int_in_range(0_u8..=10)?) / 10.0;
     let mut cell = Logged::new(u.arbitrary()?);
     cell.ledger.stop_at = Some((u.int_in_range(0..=40)?, fraction));
+    if matches!(strategy, Strategy::BackUp { .. }) {
+        // What commands beside the program asks for a person at once, whom a session has not.
+        cell.ledger.stop_at = None;
+    }
     cell.ledger.comes_at = Some((u.int_in_range(0..=40)?, fraction));
     let walks: [u8; 16] = u.arbitrary()?;
     let breaks: [u8; 2] = u.arbitrary()?;
@@ -119,6 +118,14 @@ pub fn is_a_run(u: &mut Unstructured<'_>) -> Result<bool> {
     assert_eq!(here, learned, "{}", what());
     assert_eq!(session.digest(), machine.digest(&alone), "{}", what());
     assert_eq!(session.machine().streams(), machine.streams(), "{}", what());
+    if let Ending::GivenUp { .. } = ending {
+        // Where a person is called, nothing goes on.
+        for walk in [Walk::Continue, Walk::Step(Grain::Instruction), Walk::Finish] {
+            let halt = session.go(Direction::Forward, walk);
+            assert_eq!(halt, Halt::Ended(ending.clone()), "{walk:?}: {}", what());
+            assert_eq!(session.digest(), machine.digest(&alone), "{walk:?}: {}", what());
+        }
+    }
     // What was recorded shows it again.
     session.go_to(session.recording().end).map_err(|_| arbitrary::Error::IncorrectFormat)?;
     assert_eq!(session.digest(), machine.digest(&alone), "shown again: {}", what());

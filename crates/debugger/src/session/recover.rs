@@ -10,8 +10,8 @@ use crate::retrace::retraced;
 use crate::rewound::Rewound;
 use crate::run::Run;
 use obverse_recovery::{
-    Advance, Bounds, Driven, Incident, Intent, Memory, PERSON_S, Recovering, Recovery, Strategy,
-    Teller, Unattended,
+    Advance, Bounds, Driven, Ending, Incident, Intent, Memory, PERSON_S, Recovering, Recovery,
+    Strategy, Teller, Unattended,
 };
 use obverse_vm::{Direction, Event, Observer, Stop, Stops};
 use obverse_workcell::{Safety, Workcell};
@@ -46,6 +46,9 @@ pub(super) struct Standing<'p> {
     incidents: Vec<Incident>,
     /// Whether the run was taken back by hand since it last went forward.
     is_taken_back: bool,
+    /// How the run ended, where the strategy leaves it to a person: nothing goes on from there but
+    /// by hand.
+    given_up: Option<Ending>,
 }
 
 impl<'p> Standing<'p> {
@@ -53,7 +56,7 @@ impl<'p> Standing<'p> {
     pub(super) fn of(run: &Run<'p, impl Workcell>) -> Self {
         let module = run.machine().program().module();
         let at = Recovering::new(module, run.recording().start.joints);
-        Self { at, incidents: Vec::new(), is_taken_back: false }
+        Self { at, incidents: Vec::new(), is_taken_back: false, given_up: None }
     }
 }
 
@@ -144,9 +147,16 @@ impl<'p, C: Workcell> Session<'p, C> {
     /// instructions at the most.
     pub(super) fn advance(&mut self, stops: Option<&Stops>, most: u64) -> Option<Advance> {
         self.settle_hand();
-        self.with(stops, |at, hops, recovery, teller| {
+        if let Some(ending) = &self.standing.given_up {
+            return Some(Advance::Ended(ending.clone()));
+        }
+        let advance = self.with(stops, |at, hops, recovery, teller| {
             at.advance(hops, most.max(1), recovery, teller)
-        })
+        });
+        if let Some(Advance::Ended(ending @ Ending::GivenUp { .. })) = &advance {
+            self.standing.given_up = Some(ending.clone());
+        }
+        advance
     }
 
     /// A step of the live run in reverse, by hand.
@@ -162,6 +172,7 @@ impl<'p, C: Workcell> Session<'p, C> {
     /// What was going on before the run was taken back by hand is put aside.
     fn settle_hand(&mut self) {
         if std::mem::take(&mut self.standing.is_taken_back) {
+            self.standing.given_up = None;
             self.with(None, |at, hops, recovery, teller| at.taken_back(hops, recovery, teller));
         }
     }
@@ -179,7 +190,7 @@ impl<'p, C: Workcell> Session<'p, C> {
             return self.standing.clone();
         }
         let at = retraced(&self.run, at);
-        Standing { at, incidents: Vec::new(), is_taken_back: false }
+        Standing { at, incidents: Vec::new(), is_taken_back: false, given_up: None }
     }
 
     /// A variable was changed by hand: no way leads back over that.

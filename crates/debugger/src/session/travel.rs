@@ -139,6 +139,22 @@ impl<'p, C: Workcell> Session<'p, C> {
         halt
     }
 
+    /// The same forward, no further than to a breakpoint that is there for this walk alone.
+    pub fn go_until(&mut self, breakpoint: Breakpoint, walk: Walk) -> Halt {
+        self.breakpoints.push(Breakpoint { id: 0, ..breakpoint });
+        self.stops = None;
+        let halt = self.go(Direction::Forward, walk);
+        self.breakpoints.retain(|it| it.id != 0);
+        self.stops = None;
+        match halt {
+            Halt::Hits(mut hits) => {
+                hits.retain(|hit| hit.id != 0);
+                if hits.is_empty() { Halt::Done } else { Halt::Hits(hits) }
+            }
+            halt => halt,
+        }
+    }
+
     fn go_live(&mut self, direction: Direction, walk: Walk) -> Halt {
         if self.is_held() {
             return Halt::Held;
