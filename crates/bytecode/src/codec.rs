@@ -39,7 +39,7 @@ pub struct Format {
 /// A module.
 pub const MODULE: Format = Format {
     magic: *b"OBVERSE\0",
-    version: 4,
+    version: 5,
     name: "module",
     remedy: "compile the program again",
 };

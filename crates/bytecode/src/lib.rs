@@ -21,8 +21,8 @@ pub use codec::{DecodeError, DecodeErrorKind, decode, encode, fingerprint};
 pub use fault::{Bounds, FaultName, Watched};
 pub use module::{
     ActionKind, Constant, Continuation, Depth, ErrorDeclaration, Extent, Function, FunctionKind,
-    Item, Keyframe, Mention, Mentioned, Module, Otherwise, Pattern, Perturbation, Recovery,
-    Respond, Reversal, Severity, SourceEntry, SourceFile, Variable,
+    Item, Keyframe, LoopName, Mention, Mentioned, Module, Otherwise, Pattern, Perturbation,
+    Recovery, Respond, Reversal, Severity, SourceEntry, SourceFile, Variable,
 };
 pub use places::Places;
 pub use text::{AsmError, assemble, disassemble};

@@ -44,6 +44,8 @@ pub struct Module {
     pub source_map: Vec<SourceEntry>,
     /// Where the program speaks of what its workcell must have.
     pub mentions: Vec<Mention>,
+    /// What the program calls the counters of its loops, by ascending instruction.
+    pub loops: Vec<LoopName>,
 }
 
 /// A source file.
@@ -215,6 +217,17 @@ pub enum Mentioned {
         /// Its number in the workcell.
         bit: u16,
     },
+}
+
+/// What the program calls the counter of a loop, for who looks at it.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct LoopName {
+    /// The instruction that enters the loop.
+    pub enter: u32,
+    /// The name.
+    pub name: String,
+    /// Whether it counts down: it is the complement of the counter then.
+    pub is_down: bool,
 }
 
 /// The kinds of action, in the words of a story.

@@ -283,6 +283,8 @@ pub(crate) enum StatementKind {
     For {
         /// The counter.
         counter: CounterId,
+        /// What the program calls it, if it has a name, and whether it counts down.
+        name: Option<(String, bool)>,
         /// The first number.
         first: Expression,
         /// The last number.

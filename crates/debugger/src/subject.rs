@@ -3,9 +3,9 @@
 
 use crate::recording::World;
 use obverse_bytecode::text::nearest;
-use obverse_bytecode::{Mentioned, Module};
-use obverse_isa::{ErrorId, GlobalId, LocalId, Setting, SpeedId, Type};
-use obverse_vm::State;
+use obverse_bytecode::{LoopName, Mentioned, Module};
+use obverse_isa::{ErrorId, GlobalId, Instr, LocalId, Setting, SpeedId, Type};
+use obverse_vm::{Frame, State};
 use obverse_workcell::ItemId;
 
 /// A machine and its workcell at a moment.
@@ -51,6 +51,9 @@ pub enum Subject {
     Global(GlobalId),
     /// A local variable of the innermost call of a function.
     Local(u16, LocalId),
+    /// The counter of a loop in the innermost call of a function: of all loops of the function
+    /// that call theirs as this one of the module's table does.
+    Counter(u16, u16),
     /// An output.
     Output(u16),
     /// An input, as the program read it last.
@@ -192,6 +195,7 @@ impl Subject {
                     _ => Value::Absent,
                 }
             }
+            Self::Counter(function, named) => counter(look, function, named),
             Self::Output(bit) => bool(look.world.output(bit)),
             Self::Input(bit) => bool(look.world.input(bit)),
             Self::Joint(index) => {
@@ -238,6 +242,10 @@ impl Subject {
                 module.globals.get(global.index()).map(|it| it.name.clone()).unwrap_or_default()
             }
             Self::Local(function, slot) => local(function, slot).unwrap_or_default(),
+            Self::Counter(_, named) => {
+                let named = module.loops.get(usize::from(named));
+                named.map(|named| named.name.clone()).unwrap_or_default()
+            }
             Self::Output(bit) => line_name(module, bit, true),
             Self::Input(bit) => line_name(module, bit, false),
             Self::Joint(index) => format!("joint {}", index + 1),
@@ -253,6 +261,43 @@ impl Subject {
             Self::Steps => "steps".to_owned(),
         }
     }
+}
+
+/// What the counter is of the innermost loop under way of some that have one name.
+fn counter(look: &Look<'_>, function: u16, named: u16) -> Value {
+    let frames = look.state.frames();
+    let Some(frame) = frames.iter().rposition(|frame| frame.function == function) else {
+        return Value::Absent;
+    };
+    // A caller stands behind its call.
+    let called = frames.get(frame + 1).map(|called| called.return_pc.saturating_sub(1));
+    let pc = called.unwrap_or(look.state.pc());
+    let name = look.module.loops.get(usize::from(named)).map(|named| &named.name);
+    let mut around = loops_around(look.module, pc).filter(|around| Some(&around.name) == name);
+    match around.next_back() {
+        Some(around) => Value::Int(count(look.module, around, &frames[frame])),
+        None => Value::Absent,
+    }
+}
+
+/// The loops with a name that an instruction is in, outermost first.
+pub(crate) fn loops_around(module: &Module, pc: u32) -> impl DoubleEndedIterator<Item = &LoopName> {
+    let before = module.loops.partition_point(|around| around.enter < pc);
+    module.loops[..before].iter().filter(move |around| {
+        match module.code.get(around.enter as usize) {
+            Some(Instr::ForEnter { exit, .. }) => pc < exit.0,
+            _ => false,
+        }
+    })
+}
+
+/// What the program calls the counter of a loop, in a frame.
+pub(crate) fn count(module: &Module, around: &LoopName, frame: &Frame) -> i64 {
+    let counter = match module.code.get(around.enter as usize) {
+        Some(Instr::ForEnter { counter, .. }) => frame.counter(*counter),
+        _ => 0,
+    };
+    if around.is_down { !counter } else { counter }
 }
 
 fn line_name(module: &Module, bit: u16, is_output: bool) -> String {
@@ -289,6 +334,12 @@ pub(crate) fn variable(module: &Module, function: usize, name: &str) -> Option<(
         let subject = Subject::Local(function as u16, LocalId(local as u8));
         return Some((subject, declared.locals[local].of_type));
     }
+    let is_here = |around: &LoopName| {
+        around.name == name && (declared.first..declared.end).contains(&around.enter)
+    };
+    if let Some(named) = module.loops.iter().position(is_here) {
+        return Some((Subject::Counter(function as u16, named as u16), Type::Int));
+    }
     let global = module.globals.iter().position(|global| global.name == name)?;
     Some((Subject::Global(GlobalId(global as u16)), module.globals[global].of_type))
 }
@@ -301,5 +352,8 @@ pub(crate) fn nearest_variable<'m>(
 ) -> Option<&'m str> {
     let locals = module.functions.get(function).map(|function| &function.locals);
     let all = locals.into_iter().flatten().chain(&module.globals);
-    nearest(name, all.map(|variable| variable.name.as_str()))
+    let here = module.functions.get(function).map_or(0..0, |it| it.first..it.end);
+    let loops = module.loops.iter().filter(|around| here.contains(&around.enter));
+    let loops = loops.map(|around| around.name.as_str());
+    nearest(name, all.map(|variable| variable.name.as_str()).chain(loops))
 }

@@ -26,14 +26,19 @@ pub(crate) fn writers_beside_steps(module: &Module, expression: &Expression) -> 
 fn writes(module: &Module, subject: &Subject, pc: u32, instr: &Instr) -> bool {
     match *subject {
         Subject::Global(global) => written_global(instr) == Some(global),
-        Subject::Local(function, local) => match instr {
+        Subject::Local(function, _) | Subject::Counter(function, _) => match instr {
             // Another call of the function has a variable of its own, and so has another task.
             Instr::Call { function: called, .. } => called.0 == function,
             Instr::Return {} => module.function_at(pc) == Some(usize::from(function)),
             _ if instr.info().family == Family::Task || instr.ends_turn() => true,
             _ => {
                 let is_there = module.function_at(pc) == Some(usize::from(function));
-                is_there && written_local(instr) == Some(local)
+                is_there
+                    && match *subject {
+                        Subject::Local(_, local) => written_local(instr) == Some(local),
+                        // Any jump may lead out of the loop.
+                        _ => instr.info().family == Family::Flow,
+                    }
             }
         },
         Subject::Input(bit) => match instr {

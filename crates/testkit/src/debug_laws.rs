@@ -173,7 +173,10 @@ fn expression(u: &mut Unstructured<'_>, program: &Verified) -> Result<Expression
     let module = program.module();
     let one = subject(u, program)?;
     let name = one.name(module);
-    let of = if let Subject::Local(function, _) = one { usize::from(function) } else { 0 };
+    let of = match one {
+        Subject::Local(function, _) | Subject::Counter(function, _) => usize::from(function),
+        _ => 0,
+    };
     let (steps, value) = (u.int_in_range(0..=900_u16)?, u.int_in_range(-2..=9_i8)?);
     let text = match u.int_in_range(0..=7_u8)? {
         0 => format!("steps > {steps}"),
@@ -193,6 +196,10 @@ fn subject(u: &mut Unstructured<'_>, program: &Verified) -> Result<Subject> {
     for (index, function) in module.functions.iter().enumerate() {
         let locals = 0..function.locals.len() as u8;
         subjects.extend(locals.map(|local| Subject::Local(index as u16, LocalId(local))));
+    }
+    for (index, around) in module.loops.iter().enumerate() {
+        let function = module.function_at(around.enter).unwrap_or_default();
+        subjects.push(Subject::Counter(function as u16, index as u16));
     }
     subjects.extend((0..module.errors.len()).map(|at| Subject::Error(ErrorId(at as u16))));
     Ok(u.choose(&subjects)?.clone())

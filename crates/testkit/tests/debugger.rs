@@ -234,6 +234,36 @@ fn what_has_been_taken_back_stops_nothing() {
 }
 
 #[test]
+fn the_counter_of_a_loop_is_there_within_it_by_its_name() {
+    let source = "sequence inner(n: int) {\n  for j from n down to 1 { set 2 high }\n}\n\
+                  sequence main {\n  for i from 1 to 3 {\n    call inner(i)\n  }\n\
+                  for i from 7 to 8 { set 3 high }\n}\n";
+    let compiled = compile("p.obv", source);
+    let program = verify(compiled.module.expect("it compiles")).expect("it verifies");
+    let mut session = session(&program);
+    let names = |session: &Session<'_, Ledger>, frame: usize| -> Vec<(String, Value)> {
+        let locals = session.locals(frame).into_iter();
+        locals.map(|local| (local.name, local.value)).collect()
+    };
+    session.add_breakpoint(at_line(program.module(), 2));
+    let set = Places::of_name(program.module(), "output.set").expect("there are some");
+    session.add_breakpoint(Breakpoint::at(set));
+    let mut seen = Vec::new();
+    while let Halt::Hits(_) = session.go(Forward, Walk::Continue) {
+        let frames = session.frames().len();
+        let top = names(&session, frames - 1);
+        seen.push(top.iter().map(|(name, value)| format!("{name}={value}")).collect::<String>());
+        if frames == 3 {
+            let caller = names(&session, 1);
+            assert_eq!((caller.len(), &caller[0].0[..]), (1, "i"));
+        }
+    }
+    let expected = ["n=1", "n=1j=1", "n=2", "n=2j=2", "n=2j=1", "n=3", "n=3j=3", "n=3j=2"];
+    assert_eq!(seen[..8], expected);
+    assert_eq!(seen[seen.len() - 2..], ["i=7", "i=8"]);
+}
+
+#[test]
 fn history_tells_each_action_once_with_its_way() {
     let program = program();
     let mut session = session(&program);

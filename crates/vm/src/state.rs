@@ -2,10 +2,10 @@
 
 use crate::hot::Place;
 use crate::task::Fork;
-use crate::values::{Settings, Words};
+use crate::values::{CounterSlots, Settings, Words};
 use obverse_bytecode::Function;
 use obverse_geometry::JointConfiguration;
-use obverse_isa::ErrorId;
+use obverse_isa::{CounterId, ErrorId};
 use obverse_tape::record;
 
 /// The most calls that may be under way.
@@ -103,6 +103,12 @@ impl Frame {
         for (own, remembered) in self.positions.iter_mut().zip(&around.positions) {
             *own = *remembered;
         }
+    }
+
+    /// What a loop counter is, which means something within its loop alone.
+    #[must_use]
+    pub fn counter(&self, counter: CounterId) -> i64 {
+        self.words.slot(CounterSlots::of(counter).present).cast_signed()
     }
 
     /// The words that a function uses: locals, then counters from the top.

@@ -93,6 +93,7 @@ pub const DIRECTIVES: &[&str] = &[
     ".joints",
     ".keyframe",
     ".local",
+    ".loop",
     ".map",
     ".mention",
     ".on",
@@ -281,6 +282,10 @@ impl<'t> Reader<'t> {
             }
             ".mention" => {
                 self.declared.module.mentions.push(mention::read(line)?);
+                Ok(line.end()?)
+            }
+            ".loop" => {
+                self.declared.module.loops.push(mention::read_loop(line)?);
                 Ok(line.end()?)
             }
             ".source" => {

@@ -30,10 +30,11 @@ pub fn disassemble(module: &Module) -> String {
     for file in &module.sources {
         source_file(file, &mut out);
     }
-    if !module.mentions.is_empty() {
+    if !module.mentions.is_empty() || !module.loops.is_empty() {
         out.push('\n');
     }
     mention::write(&module.mentions, &mut out);
+    mention::write_loops(&module.loops, &mut out);
     out
 }
 

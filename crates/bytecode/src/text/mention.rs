@@ -1,9 +1,10 @@
-//! Mentions as lines of assembly text, in both directions: `.mention output "lamp" 2 0 7 21`.
+//! What is for people alone as lines of assembly text, in both directions: mentions
+//! (`.mention output "lamp" 2 0 7 21`), and the names of loops (`.loop 5 "round" up`).
 
 use super::error::AsmError;
 use super::quote::quoted;
 use super::scan::Scanner;
-use crate::module::{Mention, Mentioned};
+use crate::module::{LoopName, Mention, Mentioned};
 use std::fmt::Write;
 
 /// Write a line for each.
@@ -18,6 +19,29 @@ pub(super) fn write(mentions: &[Mention], out: &mut String) {
         };
         let _ = writeln!(out, ".mention {what} {file} {start} {end}");
     }
+}
+
+/// Write a line for each name of a loop.
+pub(super) fn write_loops(loops: &[LoopName], out: &mut String) {
+    for LoopName { enter, name, is_down } in loops {
+        let way = if *is_down { "down" } else { "up" };
+        let _ = writeln!(out, ".loop {enter} {} {way}", quoted(name));
+    }
+}
+
+/// Read what follows `.loop`.
+///
+/// # Errors
+/// What is wrong with it, and where.
+pub(super) fn read_loop(line: &mut Scanner<'_>) -> Result<LoopName, AsmError> {
+    let (enter, name) = (line.number("instruction")?, line.name("name of the counter")?);
+    let way = line.word("way that it counts")?;
+    let is_down = match way.value {
+        "up" => false,
+        "down" => true,
+        _ => return Err(line.error(way.at, "a loop counts `up` or `down`")),
+    };
+    Ok(LoopName { enter, name, is_down })
 }
 
 /// Read what follows `.mention`.

@@ -40,6 +40,8 @@
 //! | a line of its text                   `|"..."` with escapes where a line is not plain
 //! .mention WHAT FILE START END           where the program speaks of its workcell; WHAT is `cell`,
 //!                                        `item N`, `tool N`, `output "NAME" N`, `input "NAME" N`
+//! .loop FIRST "NAME" up | down           what the program calls the counter of the loop that the
+//!                                        instruction FIRST enters
 //! ```
 //!
 //! DEPTH is `fixed`, `escalating`, `doubling` or `learned`; PATTERN is `spiral` or `random`; EXTENT

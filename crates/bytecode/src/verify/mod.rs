@@ -22,7 +22,7 @@
 //! 7. *Updates*: the operand of an update does not read what is updated.
 //! 8. *Blocks*: `block.begin` and its end nest, and nothing jumps in or out; a function that takes
 //!    a block's place has for parameters the first locals of the function around the block.
-//! 9. *Source map*: ascending, within the files.
+//! 9. *Source map*: ascending, within the files; so are mentions and the names of loops.
 //! 10. *Tasks*: `fork`, `fork.next` and `fork.join` nest; a fork has at most [`MAX_BRANCHES`]
 //!     branches; nothing jumps into or out of one; `fork.leave` names the join of the innermost
 //!     fork that holds it, from within no block of its own; counted loops of different branches

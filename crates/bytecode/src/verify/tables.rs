@@ -19,6 +19,7 @@ pub(super) fn check(module: &Module, findings: &mut Findings) {
     functions(module, findings);
     source_map(module, findings);
     mentions(module, findings);
+    loops(module, findings);
 }
 
 fn lengths(module: &Module, findings: &mut Findings) {
@@ -252,6 +253,20 @@ fn mentions(module: &Module, findings: &mut Findings) {
     };
     if let Some(index) = module.mentions.iter().position(|mention| is_wrong(&mention)) {
         findings.of_module(Rule::SourceMap, format!("mention {index} makes no sense"));
+    }
+}
+
+/// The names of loops: of loops, in their order.
+fn loops(module: &Module, findings: &mut Findings) {
+    let mut before = None;
+    for (index, named) in module.loops.iter().enumerate() {
+        let entered = module.code.get(named.enter as usize);
+        let is_loop = matches!(entered, Some(Instr::ForEnter { .. }));
+        if !is_loop || before >= Some(named.enter) {
+            findings.of_module(Rule::SourceMap, format!("name {index} of loops makes no sense"));
+            return;
+        }
+        before = Some(named.enter);
     }
 }
 

@@ -59,7 +59,7 @@ fn modules_round_trip() {
 fn the_header_is_as_documented() {
     let written = small();
     assert_eq!(around(&written[HEADER_BYTES..]), written);
-    assert_eq!(&written[..12], b"OBVERSE\0\x04\0\0\0");
+    assert_eq!(&written[..12], b"OBVERSE\0\x05\0\0\0");
 }
 
 #[test]
@@ -270,7 +270,7 @@ fn errors_say_where() {
     assert_eq!(text(&small()[..10]), expected);
     let mut old = small();
     old[8] = 0;
-    let expected = "byte 8: the module has format version 0, and this is version 4; compile the \
+    let expected = "byte 8: the module has format version 0, and this is version 5; compile the \
                     program again";
     assert_eq!(text(&old), expected);
     let mut other = small();

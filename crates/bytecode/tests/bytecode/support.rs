@@ -4,9 +4,9 @@
 use arbitrary::{Result, Unstructured};
 use obverse_bytecode::{
     ActionKind, Bounds, Constant, Continuation, Depth, ErrorDeclaration, Extent, FaultName,
-    Function, FunctionKind, Item, Keyframe, Mention, Mentioned, Module, Otherwise, Pattern,
-    Perturbation, Recovery, Respond, Reversal, Severity, SourceEntry, SourceFile, Variable,
-    Watched,
+    Function, FunctionKind, Item, Keyframe, LoopName, Mention, Mentioned, Module, Otherwise,
+    Pattern, Perturbation, Recovery, Respond, Reversal, Severity, SourceEntry, SourceFile,
+    Variable, Watched,
 };
 use obverse_isa::{Instr, OPS, Opcode, OperandError, OperandKind, Type};
 
@@ -197,6 +197,10 @@ pub(crate) fn everything() -> Module {
             SourceEntry { first: end, file: 9, start: 7, end: 3, action: Some(ActionKind::Io) },
         ],
         mentions: mentions().to_vec(),
+        loops: vec![
+            LoopName { enter: 7, name: "round \"x\"".to_owned(), is_down: true },
+            LoopName { enter: 2, name: "i".to_owned(), is_down: false },
+        ],
     }
 }
 
@@ -386,6 +390,9 @@ pub(crate) fn arbitrary_module(u: &mut Unstructured) -> Result<Module> {
         mentions: some(u, 4, |u| {
             let what = u.choose(&mentions())?.what.clone();
             Ok(Mention { what, file: index(u)?, start: u.arbitrary()?, end: u.arbitrary()? })
+        })?,
+        loops: some(u, 3, |u| {
+            Ok(LoopName { enter: u.arbitrary()?, name: text(u)?, is_down: u.arbitrary()? })
         })?,
     })
 }

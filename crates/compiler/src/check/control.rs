@@ -135,14 +135,17 @@ impl<'s> Checker<'s> {
         self.frame.counter_peak = self.frame.counter_peak.max(self.frame.counters);
         self.frame.layout.counters = self.frame.layout.counters.max(self.frame.counters);
         let scope = self.names.open();
-        if let Some((name, meaning)) = counted {
-            self.declare(name, meaning(counter));
+        let name = counted.map(|(name, meaning)| {
+            let meaning = meaning(counter);
+            let is_down = matches!(meaning, Meaning::CountDown(_));
+            self.declare(name, meaning);
             self.names.mark_used(name.value);
-        }
+            (name.value.to_owned(), is_down)
+        });
         let (body, _) = self.body(body, header);
         self.names.close(&scope);
         self.frame.counters -= 1;
-        let kind = StatementKind::For { counter, first, last, body };
+        let kind = StatementKind::For { counter, name, first, last, body };
         (Statement { hoists, kind, span: header }, true)
     }
 

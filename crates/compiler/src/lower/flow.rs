@@ -5,7 +5,7 @@ use super::frame::Loop;
 use super::statement::PREFIX;
 use super::test::is_alone;
 use crate::tree::{Block, Expression, ExpressionKind, Prepared, Statement, StatementKind};
-use obverse_bytecode::Mark;
+use obverse_bytecode::{LoopName, Mark};
 use obverse_isa::{CounterId, Instr};
 
 impl Lower<'_> {
@@ -22,9 +22,9 @@ impl Lower<'_> {
                 self.join_one(skip);
                 self.close_loop();
             }
-            StatementKind::For { counter, first, last, body } => {
+            StatementKind::For { counter, name, first, last, body } => {
                 self.open_loop();
-                self.counted(*counter, first, last, body);
+                self.counted((*counter, name.as_ref()), (first, last), body);
                 self.close_loop();
             }
             StatementKind::Loop(body) => {
@@ -158,9 +158,21 @@ impl Lower<'_> {
         self.code.jump(|target| test.to(target))
     }
 
-    fn counted(&mut self, counter: CounterId, first: &Expression, last: &Expression, body: &Block) {
+    fn counted(
+        &mut self,
+        (counter, name): (CounterId, Option<&(String, bool)>),
+        (first, last): (&Expression, &Expression),
+        body: &Block,
+    ) {
         self.expression(first);
         self.expression(last);
+        let enter = self.code.here();
+        let named = |(name, is_down): &(String, bool)| LoopName {
+            enter,
+            name: name.clone(),
+            is_down: *is_down,
+        };
+        self.loops.extend(name.map(named));
         let exit = self.code.jump(|exit| Instr::ForEnter { prefix: PREFIX, counter, exit });
         let top = self.code.join_ahead(|from| Instr::ForTop { counter, from });
         // The end of the body must be reached by something, and if only by a jump never taken.

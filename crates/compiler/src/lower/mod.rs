@@ -21,7 +21,9 @@ use crate::report::Reports;
 use crate::tree::Program;
 use frame::Frame;
 use kept::Changed;
-use obverse_bytecode::{ActionKind, CodeBuilder, Constant, Module, SourceEntry, Variable};
+use obverse_bytecode::{
+    ActionKind, CodeBuilder, Constant, LoopName, Module, SourceEntry, Variable,
+};
 use obverse_isa::{ConstantId, FunctionId, GlobalId, Instr, LocalId, Type};
 use obverse_syntax::codes::Code;
 use obverse_syntax::sources::Sources;
@@ -43,7 +45,7 @@ pub(crate) fn lower(
     for (id, function) in program.numbered() {
         lower.function(id, function);
     }
-    let Lower { code, constants, source_map, functions, globals, .. } = lower;
+    let Lower { code, constants, source_map, loops, functions, globals, .. } = lower;
     if reports.has_errors() {
         return None;
     }
@@ -52,6 +54,7 @@ pub(crate) fn lower(
     module.constants = constants.values;
     module.code = code.finish();
     module.source_map = source_map;
+    module.loops = loops;
     module.functions = functions;
     Some(module)
 }
@@ -65,6 +68,7 @@ struct Lower<'p> {
     code: CodeBuilder,
     constants: Constants,
     source_map: Vec<SourceEntry>,
+    loops: Vec<LoopName>,
     functions: Vec<obverse_bytecode::Function>,
     globals: HiddenGlobals,
     /// For each block that keeps its order in reverse: what it changes, and where that is kept.
@@ -126,6 +130,7 @@ impl<'p> Lower<'p> {
             code: CodeBuilder::new(),
             constants: Constants::default(),
             source_map: Vec::new(),
+            loops: Vec::new(),
             functions: Vec::new(),
             globals,
             kept: HashMap::new(),

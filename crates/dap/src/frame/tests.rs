@@ -49,7 +49,7 @@ fn framed(message: &str) -> String {
 
 fn whys(frames: &[Frame]) -> Vec<&str> {
     let why = |frame| match frame {
-        &Frame::Wrong(ref why) => Some(why.as_str()),
+        Frame::Wrong(why) => Some(why.as_str()),
         _ => None,
     };
     frames.iter().filter_map(why).collect()
@@ -57,7 +57,7 @@ fn whys(frames: &[Frame]) -> Vec<&str> {
 
 fn messages(frames: &[Frame]) -> Vec<&[u8]> {
     let message = |frame| match frame {
-        &Frame::Message(ref bytes) => Some(bytes.as_slice()),
+        Frame::Message(bytes) => Some(bytes.as_slice()),
         _ => None,
     };
     frames.iter().filter_map(message).collect()

@@ -5,7 +5,7 @@ use super::Session;
 use crate::notes::Note;
 use crate::place::{SourcePlace, source_place};
 use crate::recording::Moment;
-use crate::subject::{Subject, Value, value};
+use crate::subject::{Subject, Value, count, loops_around, value, variable};
 use crate::writers::commands;
 use obverse_bytecode::{ActionKind, Module};
 use obverse_isa::{Class, LocalId, Setting};
@@ -120,13 +120,24 @@ impl<C: Workcell> Session<'_, C> {
             return Vec::new();
         };
         let is_newest = frames.iter().rposition(|it| it.function == called.function) == Some(frame);
+        let shown = self.frames().get(frame).map_or(0, |shown| shown.pc);
+        // A caller stands behind its call.
+        let is_caller = frame + 1 < frames.len();
+        let around = loops_around(module, shown.saturating_sub(u32::from(is_caller)));
+        let counters = around.map(|around| Variable {
+            name: around.name.clone(),
+            subject: variable(module, usize::from(called.function), &around.name)
+                .map(|(subject, _)| subject)
+                .filter(|_| is_newest),
+            value: Value::Int(count(module, around, called)),
+        });
         let locals = (0_u8..).zip(&function.locals).filter(|(_, it)| !it.name.starts_with('$'));
-        let variable = |(index, declared): (u8, &obverse_bytecode::Variable)| Variable {
+        let local = |(index, declared): (u8, &obverse_bytecode::Variable)| Variable {
             name: declared.name.clone(),
             subject: is_newest.then_some(Subject::Local(called.function, LocalId(index))),
             value: value(module, declared.of_type, called.local(index)),
         };
-        locals.map(variable).collect()
+        locals.map(local).chain(counters).collect()
     }
 
     /// The variables of the program; hidden ones left out.

@@ -270,6 +270,29 @@ fn rule_9_the_source_map_is_in_order_and_in_the_text() {
 }
 
 #[test]
+fn rule_9_names_of_loops_are_of_loops_in_their_order() {
+    let text = |lines: &str| {
+        module(&format!(
+            "obvasm 1\n.function f start\n.counters 2\nenter\npush.int 1\npush.int 2\n\
+             a: for.enter 0, z\nb: for.top 0, y\npush.int 1\npush.int 2\n\
+             c: for.enter 1, x\nd: for.top 1, w\nw: for.next 1, d\nx: for.exit 1, c\n\
+             y: for.next 0, b\nz: for.exit 0, a\nhalt\n{lines}"
+        ))
+    };
+    accepted(text(".loop 3 i up\n.loop 7 i down\n"));
+    accepted(text(".loop 7 \"\" down\n"));
+    for (lines, index) in [
+        (".loop 2 i up\n", 0),
+        (".loop 14 i up\n", 0),
+        (".loop 3 i up\n.loop 3 j up\n", 1),
+        (".loop 7 i up\n.loop 3 j up\n", 1),
+    ] {
+        let why = format!("name {index} of loops makes no sense");
+        refused(text(lines), Rule::SourceMap, None, &why);
+    }
+}
+
+#[test]
 fn rule_9_mentions_are_of_what_is_there_and_in_the_text() {
     let text = |mention: &str| {
         module(&format!(
