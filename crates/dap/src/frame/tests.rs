@@ -48,19 +48,23 @@ fn framed(message: &str) -> String {
 }
 
 fn whys(frames: &[Frame]) -> Vec<&str> {
-    let why = |frame| match frame {
-        &Frame::Wrong(ref why) => Some(why.as_str()),
-        _ => None,
-    };
-    frames.iter().filter_map(why).collect()
+    let mut whys = Vec::new();
+    for frame in frames {
+        if let Frame::Wrong(why) = frame {
+            whys.push(why.as_str());
+        }
+    }
+    whys
 }
 
 fn messages(frames: &[Frame]) -> Vec<&[u8]> {
-    let message = |frame| match frame {
-        &Frame::Message(ref bytes) => Some(bytes.as_slice()),
-        _ => None,
-    };
-    frames.iter().filter_map(message).collect()
+    let mut messages = Vec::new();
+    for frame in frames {
+        if let Frame::Message(bytes) = frame {
+            messages.push(bytes.as_slice());
+        }
+    }
+    messages
 }
 
 #[test]
