@@ -88,6 +88,14 @@ fn wrong_requests_are_refused_and_change_nothing() {
         assert_eq!(answer["verified"], false, "{answer}");
         assert!(answer["message"].is_string());
     }
+    let data = json!({ "breakpoints": [
+        { "dataId": "0:held", "accessType": "read" }, { "dataId": "0:nothing_of_this_name" },
+        { "dataId": "x:held" }, {},
+    ] });
+    let body = client.ok("setDataBreakpoints", data);
+    for answer in body["breakpoints"].as_array().expect("answers") {
+        assert_eq!(answer["verified"], false, "{answer}");
+    }
     assert_eq!(client.line(), line);
     assert_eq!(client.bye("wrong"), Some(0));
 }

@@ -3,6 +3,7 @@
 //! what the server says. `UPDATE=1 cargo test --test editors` writes the colours and the page.
 
 mod colours;
+mod debugging;
 mod page;
 
 use obverse_dap::arguments::{ATTACH, Argument, LAUNCH};

@@ -55,6 +55,14 @@ pub struct Word {
     does: Does,
 }
 
+impl Word {
+    /// Whether it is carried out, and not answered with where the editor has a control for it.
+    #[must_use]
+    pub fn is_carried_out(&self) -> bool {
+        matches!(self.does, Does::Run(_))
+    }
+}
+
 const fn word(
     names: &'static [&'static str],
     arguments: &'static str,
@@ -142,7 +150,7 @@ fn find(name: &str) -> Option<&'static Word> {
 }
 
 fn help(name: &str) -> Result {
-    let heads = || WORDS.iter().filter(|word| matches!(word.does, Does::Run(_)));
+    let heads = || WORDS.iter().filter(|word| word.is_carried_out());
     let head = |word: &Word| format!("{} {}", word.names[0], word.arguments).trim_end().to_owned();
     if name.is_empty() {
         let line = |word: &Word| format!("{:<36} {}", head(word), word.help);

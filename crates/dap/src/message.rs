@@ -187,6 +187,7 @@ pub(crate) struct Asked {
     pub(crate) instruction_reference: Option<String>,
     pub(crate) offset: i64,
     pub(crate) data_id: Option<String>,
+    pub(crate) access_type: Option<String>,
     pub(crate) condition: Option<String>,
     pub(crate) hit_condition: Option<String>,
     pub(crate) log_message: Option<String>,

@@ -227,6 +227,9 @@ fn at(module: &Module, places: Places, given: &Asked) -> Result<Breakpoint, Stri
 
 fn of_data(module: &Module, given: &Asked) -> Result<Made, String> {
     let id = given.data_id.as_deref().ok_or("it must say what is watched")?;
+    if let Some(access) = given.access_type.as_deref().filter(|access| *access != "write") {
+        return Err(format!("a run stops where it is changed, and not for `{access}`"));
+    }
     let (function, text) = id.split_once(':').unwrap_or(("0", id));
     let function = function.parse().map_err(|_| format!("`{id}` is nothing that is watched"))?;
     let expression =
