@@ -25,7 +25,7 @@ fn terminal(lines: &str) -> String {
 /// One name for one thing: of each word the terminal has help under its full name.
 #[test]
 fn every_word_is_a_command_of_the_terminal() {
-    for word in WORDS {
+    for word in WORDS.iter().filter(|word| word.is_carried_out()) {
         let full = word.names[0];
         let lines: String = word.names.iter().map(|name| format!("help {name}\n")).collect();
         let told = terminal(&lines);
@@ -36,6 +36,8 @@ fn every_word_is_a_command_of_the_terminal() {
         });
         assert_eq!(heads.count(), word.names.len(), "{full}:\n{told}");
     }
+    let carried_out = WORDS.iter().filter(|word| word.is_carried_out());
+    assert!(carried_out.count() > 20);
     assert!(terminal("help such_a_word\n").contains("not done"), "what is none is told from one");
 }
 

@@ -80,10 +80,15 @@ const GUTTER: &str = "a click beside a line sets a breakpoint; its context menu 
                       hit counts and messages";
 const WATCHED: &str = "`Break on Value Change` in the context menu of a variable stops when it \
                        changes";
-const LISTED: &str = "the editor lists breakpoints, and takes them away, in its Breakpoints view";
+const LISTED: &str = "the Breakpoints view lists breakpoints, switches them, and takes them away";
+const EXPRESSIONS: &str = "the Watch view shows what something is wherever a run stops";
+const CALLS: &str =
+    "a click in the Call Stack view looks at a call: what is typed is about it then";
+const TO_A_LINE: &str = "`Run to Cursor` in the context menu of a line goes on to it";
 const INSTRUCTIONS: &str = "the buttons of the tool bar go by instructions in the Disassembly view";
 
-/// Every command that can be typed: each is one of the debugger at a terminal.
+/// Every command that can be typed. Each that is carried out is one of the debugger at a terminal;
+/// of the others it may know some.
 #[rustfmt::skip]
 pub const WORDS: &[Word] = &[
     word(&["reverse-step", "rs"], "",
@@ -105,7 +110,7 @@ pub const WORDS: &[Word] = &[
         "to a moment, the last error, a bookmark or a checkpoint; `goto end` is live again"),
     word(&["last"], "EXPRESSION|error", jumping::last,
         "to before the last change of it, as in `last output 3`; again, to the one before that"),
-    word(&["undo", "u"], "", jumping::undo, "back to before the last jump"),
+    word(&["undo"], "", jumping::undo, "back to before the last jump"),
     word(&["bookmark", "mark"], "[NAME]", jumping::bookmark,
         "remember this moment; without a name, list what is remembered"),
     word(&["why"], "", looking::why, "what stops going back from here"),
@@ -139,9 +144,22 @@ pub const WORDS: &[Word] = &[
     elsewhere(&["break", "b"], GUTTER),
     elsewhere(&["tbreak", "tb"], GUTTER),
     elsewhere(&["ignore"], GUTTER),
+    elsewhere(&["condition"], GUTTER),
     elsewhere(&["watch", "w"], WATCHED),
     elsewhere(&["delete", "d"], LISTED),
+    elsewhere(&["clear"], LISTED),
+    elsewhere(&["enable", "en"], LISTED),
+    elsewhere(&["disable", "dis"], LISTED),
     elsewhere(&["info", "i"], LISTED),
+    elsewhere(&["display"], EXPRESSIONS),
+    elsewhere(&["undisplay"], EXPRESSIONS),
+    elsewhere(&["frame", "f"], CALLS),
+    elsewhere(&["up"], CALLS),
+    elsewhere(&["down"], CALLS),
+    elsewhere(&["until", "u"], TO_A_LINE),
+    elsewhere(&["advance"], TO_A_LINE),
+    elsewhere(&["start"], "`Start Debugging` (F5), with `stopOnEntry`"),
+    elsewhere(&["run", "r"], "`Start Debugging` (F5)"),
     elsewhere(&["quit", "q", "exit"], "`Stop` (Shift+F5) of the tool bar"),
 ];
 
