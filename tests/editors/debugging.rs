@@ -1,5 +1,5 @@
-//! What docs/editor.md says of the debugger is what the adapter understands: its arguments, and what
-//! is typed into the console.
+//! What docs/editor.md says of the debugger is what the adapter understands: its arguments, and
+//! what is typed into the console.
 
 use crate::read;
 use obverse_dap::arguments::{ATTACH, Argument, LAUNCH};
