@@ -113,6 +113,38 @@ fn the_moment_is_looked_at() {
 }
 
 #[test]
+fn what_is_half_typed_is_completed() {
+    let mut client = Client::at_entry("bad_pin.obv");
+    client.typed("bookmark here");
+    let offered = |client: &mut Client, text: &str, column: u64| {
+        let asked = json!({ "text": text, "column": column, "frameId": 2 });
+        let found = client.ok("completions", asked)["targets"].clone();
+        let found = found.as_array().expect("targets").clone();
+        let label = |it: &serde_json::Value| it["label"].as_str().unwrap_or("").to_owned();
+        let begin = found.first().map(|it| (it["start"].as_u64(), it["length"].as_u64()));
+        (found.iter().map(label).collect::<Vec<_>>(), begin.unwrap_or_default())
+    };
+    let (labels, begin) = offered(&mut client, "rev", 4);
+    assert_eq!(labels[0], "reverse-step");
+    assert_eq!(begin, (Some(1), Some(3)));
+    // What stands behind the cursor does not count.
+    let (labels, begin) = offered(&mut client, "goto he and more", 8);
+    assert_eq!((labels, begin), (vec!["here".to_owned()], (Some(6), Some(2))));
+    let (labels, _) = offered(&mut client, "last next", 10);
+    assert_eq!(labels, ["next_pin"]);
+    let (labels, _) = offered(&mut client, "held == out", 12);
+    assert_eq!(labels[0], "output 0");
+    let (labels, _) = offered(&mut client, "", 1);
+    assert!(["goto", "held", "next_pin"].iter().all(|it| labels.contains(&(*it).to_owned())));
+    for wrong in [json!({}), json!({ "text": "x" }), json!({ "text": 3, "column": 1 })] {
+        client.refused("completions", wrong);
+    }
+    let far = json!({ "text": "x", "column": u64::MAX, "line": u64::MAX });
+    client.ok("completions", far);
+    assert_eq!(client.bye("console_completes"), Some(0));
+}
+
+#[test]
 fn what_is_other_is_tried_in_a_what_if() {
     let mut client = Client::at_entry("bad_pin.obv");
     client.ok("setFunctionBreakpoints", json!({ "breakpoints": [{ "name": "fetch_pin" }] }));

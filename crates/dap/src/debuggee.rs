@@ -181,6 +181,7 @@ impl<'a, 's, 'p> Debuggee<'a, 's, 'p> {
             "scopes" => self.scopes(request.given::<FrameId>()?.frame_id),
             "variables" => self.variables(request.given::<Variables>()?.variables_reference),
             "exceptionInfo" => self.exception_info(),
+            "completions" => self.completions(&request.given()?),
             "gotoTargets" => self.goto_targets(&request.given()?),
             "disassemble" => {
                 let asked: Disassemble = request.given()?;

@@ -8,11 +8,11 @@
 //! Reading order: [`frame`], one message among bytes; [`message`], what is asked; [`arguments`],
 //! what a session can begin with; `inbox` and `outbox`, how messages come and go while a run is
 //! under way; [`server`], a connection up to where a program is loaded; `begin`, how a session
-//! begins; `debuggee`, the session, with `walking` and `motion`, how it is driven, `targets`, where
-//! one can go, `points` and `filters`, its breakpoints, `places`, source files and instructions,
-//! `shown`, what is looked at, `change`, what is given another value, [`console`], what can be
-//! typed, with `stepping`, `jumping`, `looking` and `trying`, `words`, what stops are called, and
-//! `story`, what is told of recoveries.
+//! begins; `debuggee`, the session, with `walking` and `motion`, how it is driven, `targets`,
+//! where one can go, `points` and `filters`, its breakpoints, `places`, source files and
+//! instructions, `shown`, what is looked at, `change`, what is given another value, [`console`],
+//! what can be typed, with `stepping`, `jumping`, `looking`, `trying` and `completing`, `words`,
+//! what stops are called, and `story`, what is told of recoveries.
 //! It knows no files, and no source language.
 
 pub mod arguments;
@@ -22,6 +22,7 @@ pub mod server;
 
 mod begin;
 mod change;
+mod completing;
 pub mod console;
 mod debuggee;
 mod filters;

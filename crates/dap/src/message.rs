@@ -262,6 +262,15 @@ pub(crate) struct Evaluate {
 }
 
 #[derive(Deserialize)]
+#[serde(rename_all = "camelCase")]
+pub(crate) struct Completions {
+    pub(crate) text: String,
+    pub(crate) column: usize,
+    pub(crate) line: Option<usize>,
+    pub(crate) frame_id: Option<usize>,
+}
+
+#[derive(Deserialize)]
 pub(crate) struct Step {
     pub(crate) granularity: Option<String>,
 }

@@ -193,6 +193,7 @@ fn capabilities() -> Value {
         "supportsExceptionInfoRequest": true,
         "supportsExceptionFilterOptions": true,
         "supportsDelayedStackTraceLoading": true,
+        "supportsCompletionsRequest": true,
         "supportsLoadedSourcesRequest": true,
         "supportsLogPoints": true,
         "supportsTerminateRequest": true,
