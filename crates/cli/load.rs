@@ -170,7 +170,12 @@ pub(crate) fn program_with(path: &Path, parameters: &[PathBuf]) -> Result<Progra
 
 /// The program of a file, verified.
 pub(crate) fn quietly(path: &Path) -> Result<Program, Problem> {
-    let (module, source) = module(path)?;
+    quietly_with(path, &[])
+}
+
+/// The same with the values of parameter files in the place of defaults.
+pub(crate) fn quietly_with(path: &Path, parameters: &[PathBuf]) -> Result<Program, Problem> {
+    let (module, source) = module_with(path, parameters)?;
     verified(path, module, source)
 }
 

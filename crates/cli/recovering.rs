@@ -40,7 +40,11 @@ pub(crate) struct RecoveryArguments {
     pub(crate) release: u32,
 }
 
-fn strategy(text: &str) -> Result<Strategy, String> {
+/// The strategy of a name.
+///
+/// # Errors
+/// There is none of this name that can be chosen; which there are.
+pub(crate) fn strategy(text: &str) -> Result<Strategy, String> {
     match Strategy::from_name(text) {
         Some(Strategy::Oracle) => {
             Err("only `obverse trials` knows what will come of going back".to_owned())

@@ -39,8 +39,8 @@ fn wrong_requests_are_refused_and_change_nothing() {
         ("setVariable", json!({ "variablesReference": 2, "name": "x", "value": "3" })),
         ("evaluate", json!({ "expression": "nothing_of_this_name", "context": "hover" })),
         ("evaluate", json!({ "expression": "nothing_of_this_name", "context": "repl" })),
-        ("evaluate", json!({ "expression": "rewind 999999", "context": "repl" })),
-        ("evaluate", json!({ "expression": "rewind -1", "context": "repl" })),
+        ("evaluate", json!({ "expression": "goto 999999", "context": "repl" })),
+        ("evaluate", json!({ "expression": "goto -1", "context": "repl" })),
         ("evaluate", json!({ "expression": "(".repeat(900), "context": "watch" })),
         ("next", json!({ "threadId": 1, "granularity": "century" })),
         ("goto", json!({ "threadId": 1, "targetId": 3 })),
@@ -52,6 +52,26 @@ fn wrong_requests_are_refused_and_change_nothing() {
         ("exceptionInfo", json!({ "threadId": 1 })),
         ("dataBreakpointInfo", json!({ "name": "x", "variablesReference": 1 })),
         ("stepBack", json!([1, 2])),
+        ("evaluate", json!({ "expression": "goto", "context": "repl" })),
+        ("evaluate", json!({ "expression": "goto nowhere", "context": "repl" })),
+        ("evaluate", json!({ "expression": "last", "context": "repl" })),
+        ("evaluate", json!({ "expression": "last 1 + 1", "context": "repl" })),
+        ("evaluate", json!({ "expression": "undo", "context": "repl" })),
+        ("evaluate", json!({ "expression": "bookmark 3", "context": "repl" })),
+        ("evaluate", json!({ "expression": "bookmark end", "context": "repl" })),
+        ("evaluate", json!({ "expression": "history none", "context": "repl" })),
+        ("evaluate", json!({ "expression": "locals 9", "context": "repl" })),
+        ("evaluate", json!({ "expression": "list 99999", "context": "repl" })),
+        ("evaluate", json!({ "expression": "list none.obv:1", "context": "repl" })),
+        ("evaluate", json!({ "expression": "input 99 high", "context": "repl" })),
+        ("evaluate", json!({ "expression": "input 0 up", "context": "repl" })),
+        ("evaluate", json!({ "expression": "set force = 3", "context": "repl" })),
+        ("evaluate", json!({ "expression": "seed x", "context": "repl" })),
+        ("evaluate", json!({ "expression": "leave", "context": "repl" })),
+        ("evaluate", json!({ "expression": "release", "context": "repl" })),
+        ("evaluate", json!({ "expression": "recover", "context": "repl" })),
+        ("evaluate", json!({ "expression": "reverse-step 3", "context": "repl" })),
+        ("evaluate", json!({ "expression": "help nothing", "context": "repl" })),
     ];
     for (command, arguments) in wrong {
         client.refused(command, arguments);
@@ -68,8 +88,34 @@ fn wrong_requests_are_refused_and_change_nothing() {
         assert_eq!(answer["verified"], false, "{answer}");
         assert!(answer["message"].is_string());
     }
+    let data = json!({ "breakpoints": [
+        { "dataId": "0:held", "accessType": "read" }, { "dataId": "0:nothing_of_this_name" },
+        { "dataId": "x:held" }, {},
+    ] });
+    let body = client.ok("setDataBreakpoints", data);
+    for answer in body["breakpoints"].as_array().expect("answers") {
+        assert_eq!(answer["verified"], false, "{answer}");
+    }
     assert_eq!(client.line(), line);
     assert_eq!(client.bye("wrong"), Some(0));
+}
+
+/// There is one thread, and who is about one names it.
+#[test]
+fn a_thread_that_is_not_there_is_refused() {
+    let mut client = Client::at_entry("glue.obv");
+    let line = client.line();
+    let about = ["next", "stepIn", "stepOut", "continue", "stepBack", "reverseContinue", "pause"];
+    for command in about.into_iter().chain(["stackTrace", "exceptionInfo"]) {
+        let why = client.refused(command, json!({ "threadId": 99 }));
+        assert!(why.contains("no thread 99"), "{command}: {why}");
+        for wrong in [json!({}), json!({ "threadId": "1" }), Value::Null] {
+            let why = client.refused(command, wrong);
+            assert!(why.contains(command) && !why.contains("no thread 99"), "{command}: {why}");
+        }
+    }
+    assert_eq!(client.line(), line);
+    assert_eq!(client.bye("thread"), Some(0));
 }
 
 #[test]

@@ -8,6 +8,13 @@ use std::process::{Child, ChildStdin, ChildStdout, Command, Stdio};
 /// The folder of programs.
 pub(crate) const PROGRAMS: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/programs");
 
+/// The line that begins so.
+pub(crate) fn line_of(program: &str, text: &str) -> u64 {
+    let source = std::fs::read_to_string(program).expect("the program is there");
+    let at = source.lines().position(|line| line.trim_start().starts_with(text));
+    at.expect("the line is there") as u64 + 1
+}
+
 /// A client, and the adapter that it speaks to.
 pub(crate) struct Client {
     adapter: Child,

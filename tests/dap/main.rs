@@ -3,8 +3,11 @@
 //! What the adapter sends is left as transcripts, which `check.sh` beside this holds against the
 //! protocol's own schema.
 
+mod back;
 mod bad;
+mod begin;
 mod client;
+mod console;
 mod recovery;
 mod session;
 mod tape;

@@ -63,7 +63,7 @@ fn recover_is_typed_and_stopped_on_its_way_by_a_breakpoint() {
     assert_eq!(told(&client, "past peg_meets_rim"), 1);
     let nothing = json!({ "expression": "recover", "context": "repl" });
     assert!(client.refused("evaluate", nothing.clone()).contains("no error is due"));
-    client.typed("rewind 3");
+    client.typed("goto 3");
     client.event("stopped");
     client.refused("evaluate", nothing);
     assert_eq!(client.bye("recovery_recover"), Some(0));
@@ -99,7 +99,7 @@ fn a_held_arm_waits_for_a_release() {
     assert_eq!(client.event("stopped")["reason"], "exception");
     let why = client.refused("continue", json!({ "threadId": 1 }));
     assert!(why.contains("`release`"), "{why}");
-    assert_eq!(client.typed("release"), "released");
+    assert!(client.typed("release").contains("may move again"));
     let release = json!({ "expression": "release", "context": "repl" });
     assert!(client.refused("evaluate", release).contains("no stop"));
     let stopped = client.go("continue", json!({}));

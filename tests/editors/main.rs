@@ -3,9 +3,11 @@
 //! what the server says. `UPDATE=1 cargo test --test editors` writes the colours and the page.
 
 mod colours;
+mod debugging;
 mod page;
 
-use serde_json::Value;
+use obverse_dap::arguments::{ATTACH, Argument, LAUNCH};
+use serde_json::{Value, json};
 use std::path::{Path, PathBuf};
 
 fn path(file: &str) -> PathBuf {
@@ -46,13 +48,26 @@ fn the_extension_speaks_of_what_there_is() {
     }
     assert_eq!(manifest["version"], env!("CARGO_PKG_VERSION"));
     let debugger = &manifest["contributes"]["debuggers"][0];
-    let attributes = |request: &str| -> Vec<String> {
-        let properties = &debugger["configurationAttributes"][request]["properties"];
-        properties.as_object().expect("properties").keys().cloned().collect()
-    };
     assert_eq!(debugger["type"], "obverse");
-    assert_eq!(attributes("launch"), ["after", "program", "seed", "stopOnEntry", "workcell"]);
-    assert_eq!(attributes("attach"), ["after", "program", "tape", "workcell"]);
+    check_attributes(&debugger["configurationAttributes"]["launch"], LAUNCH);
+    check_attributes(&debugger["configurationAttributes"]["attach"], ATTACH);
+}
+
+/// That an editor offers what the adapter understands, by the same names and in the same words.
+fn check_attributes(offered: &Value, known: &[Argument]) {
+    let properties = offered["properties"].as_object().expect("properties");
+    let mut names: Vec<&str> = known.iter().map(|argument| argument.name).collect();
+    let required = known.iter().filter(|argument| argument.is_required);
+    let required: Vec<&str> = required.map(|argument| argument.name).collect();
+    assert_eq!(offered["required"], json!(required));
+    names.sort_unstable();
+    assert_eq!(properties.keys().map(String::as_str).collect::<Vec<_>>(), names);
+    for Argument { name, kind, about, .. } in known {
+        let mut described = about.to_string();
+        described[..1].make_ascii_uppercase();
+        assert_eq!(properties[*name]["type"], kind.schema(), "{name}");
+        assert_eq!(properties[*name]["description"], format!("{described}."), "{name}");
+    }
 }
 
 /// Lock files name no place that packages come from: that is the business of who installs.

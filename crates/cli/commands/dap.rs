@@ -6,30 +6,33 @@
 use super::Result;
 use crate::load::Program;
 use crate::problem::{Problem, plain};
-use crate::{Outcome, after, load, show, taping};
+use crate::recovering::{self, Kept};
+use crate::{Outcome, after, load, show, taping, write};
+use obverse_dap::arguments::{self, Argument};
 use obverse_dap::{Attach, Begin, Ended, Launch, Loaded, Wanted, serve};
+use obverse_debugger::Policy;
+use obverse_recovery::Memory;
 use std::io::{Read, Write};
 use std::net::{Ipv4Addr, TcpListener, TcpStream};
 use std::path::{PathBuf, absolute};
 
-/// Why standard output is left alone.
-const AFTER_HELP: &str = "\
-Standard output carries the protocol and nothing else; what goes wrong beside it is told on
-standard error. `launch` understands:
-  program      the program: source, assembly text or module
-  cell         the workcell file, in place of the one that the program names
-  seed         what all chance in the workcell follows from (0)
-  after        the program after which it begins, run in the same workcell first
-  stopOnEntry  stop before the first action (false)
-  stopAtEnd    stay at the end of the program, from where one can go back (true)
-`attach` opens the tape of a run at its end; it understands:
-  tape         the tape file
-  program      the program that it must be of; a tape has its own
-  cell         the workcell file to try otherwise in, in place of the tape's
-  after        the program that the run began after, in place of where the tape says it is";
+/// Why standard output is left alone, and what a client can ask for.
+fn after_help() -> String {
+    let lines = |known: &[Argument]| -> String {
+        let line = |one: &Argument| format!("\n  {:<12} {}", one.name, one.about);
+        known.iter().map(line).collect()
+    };
+    format!(
+        "Standard output carries the protocol and nothing else; what goes wrong beside it is told \
+         on\nstandard error. `launch` understands:{}\n`attach` opens the tape of a run at its end; \
+         it understands:{}",
+        lines(arguments::LAUNCH),
+        lines(arguments::ATTACH)
+    )
+}
 
 #[derive(clap::Args)]
-#[command(after_help = AFTER_HELP)]
+#[command(after_help = after_help())]
 pub(crate) struct Arguments {
     /// Listen on this port of the loopback address, in place of standard input; 0 is any that is
     /// free, which is told.
@@ -96,7 +99,7 @@ fn attached(attach: &Attach) -> std::result::Result<Loaded, Problem> {
     let opened = taping::open(&attach.tape)?;
     let paths = match &attach.program {
         Some(program) => {
-            let program = load::quietly(program)?;
+            let program = load::quietly_with(program, &attach.parameters)?;
             opened.check_is_of(&program)?;
             paths(&program)
         }
@@ -110,9 +113,20 @@ fn attached(attach: &Attach) -> std::result::Result<Loaded, Problem> {
         Err(problem) if named.is_some() => return Err(problem),
         start => start.ok().map(Box::new),
     };
-    let seed = opened.file.head.seed;
+    let policy = policy(attach.strategy.as_deref(), opened.file.head.seed)?;
     let begin = Begin::Recorded(Box::new(opened.file.recording), start);
-    Ok(Loaded { program: opened.program.verified, begin, seed, paths, notes })
+    let (program, memory) = (opened.program.verified, Memory::default());
+    Ok(Loaded { program, begin, policy, memory, keep: None, paths, notes })
+}
+
+/// What is done about errors.
+fn policy(strategy: Option<&str>, seed: u64) -> std::result::Result<Policy, Problem> {
+    let named = strategy.map(|name| {
+        let wrong = |why| Problem::new(format!("`strategy` is `{name}`: {why}"));
+        recovering::strategy(name).map_err(wrong)
+    });
+    let declared = Policy::declared(seed);
+    Ok(Policy { strategy: named.transpose()?.unwrap_or(declared.strategy), ..declared })
 }
 
 /// The source files of a program that are on disk.
@@ -126,19 +140,32 @@ fn paths(program: &Program) -> Vec<Option<PathBuf>> {
 
 /// The program and the workcell of a launch.
 fn launched(launch: &Launch) -> std::result::Result<Loaded, Problem> {
-    let program = load::quietly(&launch.program)?;
+    let program = load::quietly_with(&launch.program, &launch.parameters)?;
     let named = launch.cell.as_deref();
+    if let Some(memory) = &launch.memory {
+        let cell = load::workcell_path(&program, named);
+        let inputs: Vec<PathBuf> = program.files().into_iter().chain(cell).collect();
+        write::check_text(memory, "memory", &inputs)?;
+    }
     let (mut cell, file) = load::workcell(&program, named, launch.seed)?;
     after::lead(launch.after.as_deref(), &mut cell, &file)?;
     load::machine(&program, &cell, &file)?;
+    let policy = policy(launch.strategy.as_deref(), launch.seed)?;
+    let kept = Kept::read(launch.memory.as_deref(), &program, &file.name)?;
     let paths = paths(&program);
-    let notes = program.source.iter().flat_map(show::diagnostic_lines).collect();
-    let place = file.name;
-    let mut notes: Vec<String> = notes;
+    let mut notes: Vec<String> = program.source.iter().flat_map(show::diagnostic_lines).collect();
     let after = after::words(launch.after.as_deref());
-    notes.push(format!("{} in {place}, seed {}{after}", launch.program.display(), launch.seed));
-    let begin = Begin::Live(Box::new(cell));
-    Ok(Loaded { program: program.verified, begin, seed: launch.seed, paths, notes })
+    let (shown, place) = (launch.program.display(), file.name);
+    notes.push(format!("{shown} in {place}, seed {}{after}", launch.seed));
+    Ok(Loaded {
+        program: program.verified,
+        begin: Begin::Live(Box::new(cell)),
+        policy,
+        memory: kept.memory(),
+        keep: Some(Box::new(move |memory| kept.keep(memory).map_err(|why| words(&why)))),
+        paths,
+        notes,
+    })
 }
 
 fn words(problem: &Problem) -> String {

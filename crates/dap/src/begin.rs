@@ -34,6 +34,8 @@ pub(crate) struct Stops {
     pub(crate) stop_at_end: bool,
     /// Nowhere at all.
     pub(crate) no_debug: bool,
+    /// After about so many instructions of a request.
+    pub(crate) limit: u64,
 }
 
 impl Stops {
@@ -43,8 +45,14 @@ impl Stops {
                 stop_on_entry: launch.stop_on_entry,
                 stop_at_end: launch.stop_at_end,
                 no_debug: launch.no_debug,
+                limit: launch.limit.map_or(u64::MAX, |limit| limit.max(1)),
             },
-            Wanted::Attach(_) => Self { stop_on_entry: true, stop_at_end: true, no_debug: false },
+            Wanted::Attach(attach) => Self {
+                stop_on_entry: true,
+                stop_at_end: true,
+                no_debug: false,
+                limit: attach.limit.map_or(u64::MAX, |limit| limit.max(1)),
+            },
         }
     }
 }

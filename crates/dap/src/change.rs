@@ -3,7 +3,8 @@
 use crate::debuggee::{Answer, Debuggee};
 use crate::message::{Request, SetVariable};
 use crate::shown;
-use obverse_debugger::{Declined, Expression, Mode, Subject, Value as Known};
+use obverse_debugger::{Declined, Expression, Mode, Session, Subject, Value as Known};
+use obverse_sim::Sim;
 use serde_json::json;
 
 impl Debuggee<'_, '_, '_> {
@@ -31,31 +32,40 @@ impl Debuggee<'_, '_, '_> {
         let expression =
             Expression::parse(module, function, text).map_err(|error| error.to_string())?;
         let value = self.session.look(|look| expression.value(look));
+        let done = self.in_what_if(|session| match (subject, &value) {
+            (Subject::Input(bit), Known::Bool(level)) => session.force_input(*bit, Some(*level)),
+            (Subject::Global(_) | Subject::Local(..), _) => session.assign(subject, &value),
+            _ => Err(Declined::NotAssignable),
+        });
+        done.map_err(|why| format!("`{}`: {why}", subject.name(module)))?;
+        match subject {
+            Subject::Input(_) => Ok(value),
+            _ => Ok(self.session.look(|look| subject.read(look))),
+        }
+    }
+
+    /// Change something in a what-if, which begins here if none has; if it cannot be changed, none
+    /// begins.
+    pub(crate) fn in_what_if(
+        &mut self,
+        change: impl FnOnce(&mut Session<'_, Sim>) -> Result<(), Declined>,
+    ) -> Result<(), String> {
+        self.refuse_moving()?;
         let is_new = self.session.mode() != Mode::WhatIf;
         if is_new {
             self.session.what_if().map_err(|why| why.to_string())?;
         }
-        let done = match (subject, &value) {
-            (Subject::Input(bit), Known::Bool(level)) => {
-                self.session.force_input(*bit, Some(*level))
-            }
-            (Subject::Global(_) | Subject::Local(..), _) => self.session.assign(subject, &value),
-            _ => Err(Declined::NotAssignable),
-        };
-        if let Err(why) = done {
+        if let Err(why) = change(&mut self.session) {
             if is_new {
                 self.session.leave_what_if().map_err(|why| why.to_string())?;
             }
-            return Err(format!("`{}`: {why}", subject.name(module)));
+            return Err(why.to_string());
         }
         if is_new {
             let text = "what follows is a what-if, in a copy of the workcell; `leave` goes back to \
                         the run, which stays as it was";
             self.server.out.tell("console", text);
         }
-        match subject {
-            Subject::Input(_) => Ok(value),
-            _ => Ok(self.session.look(|look| subject.read(look))),
-        }
+        Ok(())
     }
 }

@@ -4,30 +4,37 @@
 //! with the reason, and nothing has moved.
 
 use crate::begin::{Stops, run};
+use crate::filters;
 use crate::message::{
-    DataInfo, Disassemble, FrameId, Goto, GotoTargets, Request, SetBreakpoints, SetExceptions,
-    SetPoints, SourceText, Step, Variables, Wanted,
+    DataInfo, Disassemble, FilterOption, FrameId, Request, SetBreakpoints, SetExceptions,
+    SetPoints, SourceText, ThreadId, Variables, Wanted,
 };
-use crate::motion::{Begun, Going, is_end};
+use crate::motion::{Going, is_end};
 use crate::places;
-use crate::points::{Group, Points, data, filters};
+use crate::points::{Group, Points, data};
 use crate::server::{Ended, Loaded, Server};
 use crate::story::{Story, Told};
 use crate::words::{self, Words};
-use obverse_bytecode::FunctionKind;
-use obverse_debugger::{Grain, Halt, Mode, Moment, Policy, Session, Walk};
-use obverse_recovery::Memory;
+use obverse_debugger::{Halt, Moment, Session};
 use obverse_sim::Sim;
-use obverse_vm::Direction;
 use serde_json::{Value, json};
-use std::sync::atomic::Ordering;
 
 /// A program is one thread to clients, also where it forks: its branches are one history.
 pub(crate) const THREAD: u64 = 1;
-/// The most instructions between two looks at what log points have told.
-const SLICE: u64 = 1 << 16;
-/// The most moments that are offered of a line.
-const MAX_TARGETS: usize = 50;
+
+/// The requests that are about the thread, and must name it.
+const OF_THREAD: [&str; 10] = [
+    "continue",
+    "next",
+    "stepIn",
+    "stepOut",
+    "stepBack",
+    "reverseContinue",
+    "goto",
+    "pause",
+    "stackTrace",
+    "exceptionInfo",
+];
 
 /// What follows a request.
 pub(crate) enum Next {
@@ -47,16 +54,16 @@ pub(crate) struct Debuggee<'a, 's, 'p> {
     pub(crate) server: &'a mut Server<'s>,
     pub(crate) session: Session<'p, Sim>,
     pub(crate) loaded: &'p Loaded,
-    launch: Stops,
-    points: Points,
+    pub(crate) launch: Stops,
+    pub(crate) points: Points,
     /// What is told of recoveries.
-    told: Told,
+    pub(crate) told: Told,
     /// What the last stop was about.
     stop: Words,
     /// The moments that were offered last.
-    targets: Vec<Moment>,
-    is_started: bool,
-    is_over: bool,
+    pub(crate) targets: Vec<Moment>,
+    pub(crate) is_started: bool,
+    pub(crate) is_over: bool,
 }
 
 impl<'a, 's, 'p> Debuggee<'a, 's, 'p> {
@@ -69,7 +76,7 @@ impl<'a, 's, 'p> Debuggee<'a, 's, 'p> {
         let mut session = Session::over(run(loaded)?);
         let told = Told::default();
         session.tell_to(Box::new(Story { module: session.module(), told: told.clone() }));
-        session.recover_by(Policy::declared(loaded.seed), Memory::default());
+        session.recover_by(loaded.policy, loaded.memory.clone());
         server.inbox.ring(session.interrupter());
         Ok(Self {
             server,
@@ -91,13 +98,22 @@ impl<'a, 's, 'p> Debuggee<'a, 's, 'p> {
             self.server.out.tell("console", note);
         }
         self.server.out.answer(launch, Value::Null);
-        let filters = filters(Some(self.session.module()));
         let capabilities = json!({
-            "exceptionBreakpointFilters": filters,
+            "exceptionBreakpointFilters": filters::offered(Some(self.session.module())),
             "supportsSetVariable": self.session.can_try(),
         });
         self.server.out.event("capabilities", json!({ "capabilities": capabilities }));
         self.server.out.event("initialized", json!({}));
+        let ended = self.until_done();
+        let kept = self.loaded.keep.as_ref().map_or(Ok(()), |keep| keep(self.session.memory()));
+        if let Err(why) = kept {
+            (self.server.log)(&why);
+            self.server.out.tell("stderr", &why);
+        }
+        ended
+    }
+
+    fn until_done(&mut self) -> Ended {
         loop {
             let request = match self.server.next() {
                 Ok(request) => request,
@@ -115,7 +131,11 @@ impl<'a, 's, 'p> Debuggee<'a, 's, 'p> {
         }
     }
 
-    fn handle(&mut self, request: &Request) -> Next {
+    pub(crate) fn handle(&mut self, request: &Request) -> Next {
+        if let Err(why) = check_thread(request) {
+            self.server.out.refuse(request, &why);
+            return Next::Stay;
+        }
         match request.command.as_str() {
             "configurationDone" => self.start(request),
             "continue" | "next" | "stepIn" | "stepOut" => self.forward(request),
@@ -161,6 +181,7 @@ impl<'a, 's, 'p> Debuggee<'a, 's, 'p> {
             "scopes" => self.scopes(request.given::<FrameId>()?.frame_id),
             "variables" => self.variables(request.given::<Variables>()?.variables_reference),
             "exceptionInfo" => self.exception_info(),
+            "completions" => self.completions(&request.given()?),
             "gotoTargets" => self.goto_targets(&request.given()?),
             "disassemble" => {
                 let asked: Disassemble = request.given()?;
@@ -199,207 +220,8 @@ impl<'a, 's, 'p> Debuggee<'a, 's, 'p> {
         Next::Stay
     }
 
-    fn start(&mut self, request: &Request) -> Next {
-        if self.is_started {
-            self.server.out.refuse(request, "it has started already");
-            return Next::Stay;
-        }
-        self.is_started = true;
-        self.server.out.answer(request, Value::Null);
-        self.server.out.event("thread", json!({ "reason": "started", "threadId": THREAD }));
-        if self.session.run().cell().is_none() {
-            self.stopped(Words::new("entry", "at the end of the recording"), &[]);
-            return Next::Stay;
-        }
-        if self.launch.stop_on_entry && !self.launch.no_debug {
-            self.enter();
-            self.stopped(Words::new("entry", "at the start of the program"), &[]);
-            return Next::Stay;
-        }
-        Next::Go(Going::new(&self.session, Direction::Forward, Walk::Continue))
-    }
-
-    /// To the first statement that a person wrote into a sequence: what is before sets variables,
-    /// and commands nothing.
-    fn enter(&mut self) {
-        let module = self.session.module();
-        let is_before = |session: &Session<'_, Sim>| {
-            let function = module.function_at(session.machine().state().pc());
-            let function = function.and_then(|function| module.functions.get(function));
-            function.is_some_and(|function| function.kind == FunctionKind::Start)
-        };
-        let step = Walk::Step(Grain::Statement);
-        while is_before(&self.session) {
-            if self.session.go(Direction::Forward, step) != Halt::Done {
-                break;
-            }
-        }
-    }
-
-    /// Why the run cannot go anywhere, if it cannot.
-    pub(crate) fn refuse_moving(&self) -> Result<(), String> {
-        match (self.is_over, self.is_started) {
-            (true, _) => Err("the session is over".to_owned()),
-            (false, false) => Err("`configurationDone` comes first".to_owned()),
-            (false, true) => Ok(()),
-        }
-    }
-
-    fn forward(&mut self, request: &Request) -> Next {
-        let walk = self.refuse_moving().and_then(|()| {
-            let grain = grain(request)?;
-            Ok(match request.command.as_str() {
-                "next" => Walk::Next(grain),
-                "stepIn" => Walk::Step(grain),
-                "stepOut" => Walk::Finish,
-                _ => Walk::Continue,
-            })
-        });
-        let walk = match walk {
-            Ok(walk) => walk,
-            Err(why) => {
-                self.server.out.refuse(request, &why);
-                return Next::Stay;
-            }
-        };
-        let position = self.session.position();
-        let is_rewound = position.mode == Mode::Rewound;
-        if is_rewound && position.moment == position.end {
-            let words = words::halt(&self.session, &Halt::EndOfRecording);
-            self.server.out.refuse(request, &words.description);
-            return Next::Stay;
-        }
-        if !is_rewound && self.session.is_held() {
-            self.server.out.refuse(request, words::HELD);
-            return Next::Stay;
-        }
-        self.server.out.answer(request, going_on(request));
-        Next::Go(Going::new(&self.session, Direction::Forward, walk))
-    }
-
-    fn back(&mut self, request: &Request) -> Next {
-        let going = self.refuse_moving().and_then(|()| self.way_back(request));
-        let going = match going {
-            Ok(going) => going,
-            Err(why) => {
-                self.server.out.refuse(request, &why);
-                return Next::Stay;
-            }
-        };
-        match going.begin(&mut self.session) {
-            Begun::Refused(halt) => {
-                let words = words::halt(&self.session, &halt);
-                let text = words.text.map(|text| format!("; {text}")).unwrap_or_default();
-                let why = format!("{}{text}", words.description);
-                self.server.out.refuse(request, &why);
-                self.server.out.tell("console", &why);
-                Next::Stay
-            }
-            Begun::Halted(halt) => {
-                self.server.out.answer(request, going_on(request));
-                self.tell();
-                self.halted(&halt);
-                Next::Stay
-            }
-            Begun::GoesOn => {
-                self.server.out.answer(request, going_on(request));
-                Next::Go(going)
-            }
-        }
-    }
-
-    fn way_back(&self, request: &Request) -> Result<Going, String> {
-        let walk = match request.command.as_str() {
-            "restartFrame" => {
-                let frame = request.given::<FrameId>()?.frame_id;
-                let depth = self.session.frames().len();
-                if frame == 0 || frame > depth {
-                    return Err(format!("there is no call {frame}: {depth} are under way"));
-                }
-                return Ok(Going::to_begin_of(frame));
-            }
-            "reverseContinue" => Walk::Continue,
-            _ => match grain(request)? {
-                Grain::Instruction => Walk::Step(Grain::Instruction),
-                grain => Walk::Next(grain),
-            },
-        };
-        Ok(Going::new(&self.session, Direction::Reverse, walk))
-    }
-
-    /// Go on until something stops it, and serve the client meanwhile.
-    fn drive(&mut self, going: Going) -> Option<Ended> {
-        let interrupter = self.session.interrupter();
-        self.session.limit(SLICE);
-        let ended = loop {
-            let halt = going.go(&mut self.session);
-            self.tell();
-            if self.server.out.is_gone {
-                break Some(Ended::Gone);
-            }
-            match halt {
-                Halt::Limit if !interrupter.load(Ordering::Relaxed) => {}
-                Halt::Limit | Halt::Interrupted => match self.meanwhile() {
-                    Ok(true) => {}
-                    Ok(false) => {
-                        self.halted(&Halt::Interrupted);
-                        break None;
-                    }
-                    Err(ended) => break Some(ended),
-                },
-                halt if self.passes(&halt) => {}
-                halt => {
-                    self.halted(&halt);
-                    break None;
-                }
-            }
-        };
-        self.session.limit(u64::MAX);
-        ended
-    }
-
-    /// Whether the run goes on from a halt, since nobody wants to hear of it.
-    fn passes(&self, halt: &Halt) -> bool {
-        let goes_on = !self.session.is_over() && !self.session.is_held();
-        let is_nothing = self.launch.no_debug && matches!(halt, Halt::Stopped(_)) && goes_on;
-        is_nothing || self.points.passes(self.session.module(), halt)
-    }
-
-    /// The message that a run was halted for. Whether the run goes on.
-    fn meanwhile(&mut self) -> Result<bool, Ended> {
-        let Some(frame) = self.server.inbox.take() else { return Ok(true) };
-        let Some(request) = self.server.request(frame)? else { return Ok(true) };
-        match request.command.as_str() {
-            "pause" => {
-                self.server.out.answer(&request, Value::Null);
-                return Ok(false);
-            }
-            "terminate" => {
-                self.handle(&request);
-                return Ok(false);
-            }
-            "threads"
-            | "setBreakpoints"
-            | "setFunctionBreakpoints"
-            | "setDataBreakpoints"
-            | "setInstructionBreakpoints"
-            | "setExceptionBreakpoints"
-            | "dataBreakpointInfo"
-            | "disassemble"
-            | "loadedSources"
-            | "source"
-            | "disconnect" => {
-                if let Next::End(ended) = self.handle(&request) {
-                    return Err(ended);
-                }
-            }
-            _ => self.server.out.refuse(&request, "the program is running: pause it first"),
-        }
-        Ok(true)
-    }
-
     /// What log points have told, and what was done about errors.
-    fn tell(&mut self) {
+    pub(crate) fn tell(&mut self) {
         for text in self.told.take() {
             self.server.out.tell("console", &text);
         }
@@ -409,11 +231,14 @@ impl<'a, 's, 'p> Debuggee<'a, 's, 'p> {
     }
 
     /// It has come to a halt, and a client is told why.
-    fn halted(&mut self, halt: &Halt) {
+    pub(crate) fn halted(&mut self, halt: &Halt, going: Going) {
         if self.is_over {
             return;
         }
-        let mut words = words::halt(&self.session, halt);
+        let mut words = match halt {
+            Halt::Done if going.is_restart() => Words::new("restart", "back where it was called"),
+            halt => words::halt(&self.session, halt),
+        };
         words.add_intent(&mut self.session, halt);
         let mut ids = Vec::new();
         if let Halt::Hits(hits) = halt {
@@ -441,7 +266,7 @@ impl<'a, 's, 'p> Debuggee<'a, 's, 'p> {
     }
 
     /// A client is told that it stands somewhere, and why.
-    fn stopped(&mut self, words: Words, ids: &[u32]) {
+    pub(crate) fn stopped(&mut self, words: Words, ids: &[u32]) {
         let mode = words::mode(&self.session);
         let mut body = json!({
             "reason": words.reason,
@@ -496,8 +321,11 @@ impl<'a, 's, 'p> Debuggee<'a, 's, 'p> {
 
     fn set_errors(&mut self, request: &Request) -> Answer {
         let asked: SetExceptions = request.given()?;
-        let filters = if self.launch.no_debug { Vec::new() } else { asked.filters };
-        Ok(self.points.set_errors(&mut self.session, filters))
+        let plain = asked.filters.into_iter();
+        let plain = plain.map(|filter_id| FilterOption { filter_id, condition: None });
+        let all = plain.chain(asked.filter_options).collect();
+        let all = if self.launch.no_debug { Vec::new() } else { all };
+        Ok(self.points.set_errors(&mut self.session, all))
     }
 
     fn data_info(&self, asked: &DataInfo) -> Answer {
@@ -517,53 +345,18 @@ impl<'a, 's, 'p> Debuggee<'a, 's, 'p> {
         let words = self.stop.text.as_ref().unwrap_or(&self.stop.description);
         Ok(json!({ "exceptionId": id, "description": words, "breakMode": "always" }))
     }
+}
 
-    /// The moments at which something was done on a line, newest first.
-    fn goto_targets(&mut self, asked: &GotoTargets) -> Answer {
-        let file = places::file(self.loaded, &asked.source)?;
-        let line = self.server.client.line_of(asked.line);
-        let mut actions = self.session.history();
-        actions.retain(|action| places::is_on(action.place.as_ref(), file, line));
-        actions.reverse();
-        actions.truncate(MAX_TARGETS);
-        self.targets = actions.iter().map(|action| action.moment).collect();
-        let target = |(id, action): (usize, &obverse_debugger::session::Action)| {
-            let back = if action.direction == Direction::Reverse { "going back over " } else { "" };
-            json!({
-                "id": id,
-                "label": format!("moment {}: {back}{}", action.moment, action.text),
-                "line": asked.line,
-                "instructionPointerReference": action.pc.to_string(),
-            })
-        };
-        let targets: Vec<Value> = actions.iter().enumerate().map(target).collect();
-        Ok(json!({ "targets": targets }))
+/// That a request names the thread that there is, if it is about one.
+pub(crate) fn check_thread(request: &Request) -> Result<(), String> {
+    if !OF_THREAD.contains(&request.command.as_str()) {
+        return Ok(());
     }
-
-    fn jump(&mut self, request: &Request) -> Answer {
-        self.refuse_moving()?;
-        let asked: Goto = request.given()?;
-        let moment = self.targets.get(asked.target_id).copied();
-        let moment = moment.ok_or("ask for `gotoTargets` first: there is no such target")?;
-        self.session.go_to(moment).map_err(|why| why.to_string())?;
-        Ok(Value::Null)
+    let ThreadId { thread_id } = request.given()?;
+    match thread_id {
+        THREAD => Ok(()),
+        other => Err(format!("there is no thread {other}: the only one is {THREAD}")),
     }
 }
 
 const NO_STOPS: &str = "it was launched to run without stops";
-
-fn going_on(request: &Request) -> Value {
-    match request.command.as_str() {
-        "continue" => json!({ "allThreadsContinued": true }),
-        _ => Value::Null,
-    }
-}
-
-fn grain(request: &Request) -> Result<Grain, String> {
-    let asked: Step = request.given()?;
-    match asked.granularity.as_deref() {
-        Some("instruction") => Ok(Grain::Instruction),
-        None | Some("statement" | "line") => Ok(Grain::Statement),
-        Some(other) => Err(format!("there are no steps of a `{other}`")),
-    }
-}

@@ -95,13 +95,21 @@ pub struct Launch {
     /// The program.
     pub program: PathBuf,
     /// The workcell file, in place of the one that the program names.
-    #[serde(default, alias = "workcell")]
     pub cell: Option<PathBuf>,
     /// What all chance in the workcell follows from.
     #[serde(default)]
     pub seed: u64,
     /// The program after which it begins, run in the same workcell first.
     pub after: Option<PathBuf>,
+    /// Files of values for parameters of actions, in place of their defaults.
+    #[serde(default)]
+    pub parameters: Vec<PathBuf>,
+    /// How errors are recovered from whose recovery is reversal.
+    pub strategy: Option<String>,
+    /// The file that keeps what is learned of how far to go back.
+    pub memory: Option<PathBuf>,
+    /// About how many instructions a request runs at the most.
+    pub limit: Option<u64>,
     /// Whether to stop before the first action.
     #[serde(default)]
     pub stop_on_entry: bool,
@@ -125,11 +133,17 @@ pub struct Attach {
     pub tape: PathBuf,
     /// The program that it must be of; a tape has its own.
     pub program: Option<PathBuf>,
+    /// Files of values for parameters of that program.
+    #[serde(default)]
+    pub parameters: Vec<PathBuf>,
     /// The workcell file in which to try what would have been, in place of the tape's.
-    #[serde(default, alias = "workcell")]
     pub cell: Option<PathBuf>,
     /// The program that the run began after, in place of where the tape says that it is.
     pub after: Option<PathBuf>,
+    /// How errors are recovered from in what is tried.
+    pub strategy: Option<String>,
+    /// About how many instructions a request runs at the most.
+    pub limit: Option<u64>,
 }
 
 /// What a client wants to debug.
@@ -173,15 +187,34 @@ pub(crate) struct Asked {
     pub(crate) instruction_reference: Option<String>,
     pub(crate) offset: i64,
     pub(crate) data_id: Option<String>,
+    pub(crate) access_type: Option<String>,
     pub(crate) condition: Option<String>,
     pub(crate) hit_condition: Option<String>,
     pub(crate) log_message: Option<String>,
 }
 
 #[derive(Deserialize)]
+#[serde(rename_all = "camelCase")]
 pub(crate) struct SetExceptions {
     #[serde(default)]
     pub(crate) filters: Vec<String>,
+    #[serde(default)]
+    pub(crate) filter_options: Vec<FilterOption>,
+}
+
+/// A filter of errors, for some of them.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(rename_all = "camelCase")]
+pub(crate) struct FilterOption {
+    pub(crate) filter_id: String,
+    pub(crate) condition: Option<String>,
+}
+
+/// The thread that most requests name.
+#[derive(Deserialize)]
+#[serde(rename_all = "camelCase")]
+pub(crate) struct ThreadId {
+    pub(crate) thread_id: u64,
 }
 
 #[derive(Deserialize)]
@@ -226,6 +259,15 @@ pub(crate) struct Evaluate {
     pub(crate) expression: String,
     pub(crate) frame_id: Option<usize>,
     pub(crate) context: Option<String>,
+}
+
+#[derive(Deserialize)]
+#[serde(rename_all = "camelCase")]
+pub(crate) struct Completions {
+    pub(crate) text: String,
+    pub(crate) column: usize,
+    pub(crate) line: Option<usize>,
+    pub(crate) frame_id: Option<usize>,
 }
 
 #[derive(Deserialize)]

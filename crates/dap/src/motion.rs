@@ -1,61 +1,108 @@
 //! How a session is driven for a request: in pieces, so that it can be halted for a message and go
 //! on afterwards as if it had not been.
 
-use obverse_bytecode::Module;
+use obverse_bytecode::{FunctionKind, Module};
 use obverse_debugger::{Grain, Halt, Session, Walk};
 use obverse_sim::Sim;
 use obverse_vm::{Direction, State, Stop, can_stop_at};
+
+/// Where a way leads beside where its walk does.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Aim {
+    /// Nowhere else.
+    Walked,
+    /// Into the first sequence, or back into it from the end of the program: what calls it is
+    /// written nowhere, so that there is nothing to step over.
+    Sequence,
+    /// To the beginning of the call that it leaves, whatever it comes to on its way.
+    Begin,
+}
 
 /// What is under way.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Going {
     pub(crate) direction: Direction,
-    pub(crate) walk: Walk,
-    /// How many calls were under way where it began.
+    walk: Walk,
+    /// How many calls were under way where it began, or are to be where it ends.
     depth: usize,
-    /// Whether the call that this leaves is entered again.
-    pub(crate) enters: bool,
+    aim: Aim,
 }
 
 impl Going {
     pub(crate) fn new(session: &Session<'_, Sim>, direction: Direction, walk: Walk) -> Self {
-        Self { direction, walk, depth: depth(session), enters: false }
+        let is_statement = match (walk, direction) {
+            (Walk::Next(grain), _) | (Walk::Step(grain), Direction::Forward) => {
+                grain == Grain::Statement
+            }
+            _ => false,
+        };
+        match is_statement && is_in_start(session) {
+            true => Self { direction, walk, depth: SEQUENCE_DEPTH, aim: Aim::Sequence },
+            false => Self { direction, walk, depth: depth(session), aim: Aim::Walked },
+        }
     }
 
     /// Back to the beginning of a call, counted from the outermost, from 1.
     pub(crate) fn to_begin_of(frame: usize) -> Self {
         let (direction, walk) = (Direction::Reverse, Walk::Finish);
-        Self { direction, walk, depth: frame, enters: true }
+        Self { direction, walk, depth: frame, aim: Aim::Begin }
+    }
+
+    /// Whether it goes to the beginning of a call.
+    pub(crate) fn is_restart(self) -> bool {
+        self.aim == Aim::Begin
     }
 
     /// Go on until it is where it was to go, or something stops it.
     pub(crate) fn go(self, session: &mut Session<'_, Sim>) -> Halt {
         loop {
-            let walk = match self.walk {
-                Walk::Next(_) if depth(session) > self.depth => Walk::Finish,
-                walk => walk,
-            };
-            let halt = session.go(self.direction, walk);
-            if halt != Halt::Done {
-                return halt;
-            }
-            if self.is_there(session, walk) {
-                break;
+            let walk = self.piece(session);
+            match session.go(self.direction, walk) {
+                Halt::Done if self.is_there(session, walk) => break,
+                Halt::Done => {}
+                // It was asked for the beginning, and nothing between.
+                Halt::Hits(_) if self.is_restart() => {
+                    if self.is_there(session, walk) {
+                        break;
+                    }
+                }
+                halt => return halt,
             }
         }
-        if self.enters {
-            return session.go(Direction::Forward, Walk::Step(Grain::Instruction));
+        // Before a call may be what it is given.
+        while self.is_restart() && depth(session) < self.depth {
+            match session.go(Direction::Forward, Walk::Step(Grain::Instruction)) {
+                Halt::Done | Halt::Hits(_) => {}
+                halt => return halt,
+            }
         }
         Halt::Done
     }
 
+    /// How it goes on from where it is.
+    fn piece(self, session: &Session<'_, Sim>) -> Walk {
+        match self.walk {
+            Walk::Next(_) | Walk::Step(_) if self.aim == Aim::Sequence && is_in_start(session) => {
+                match self.direction {
+                    Direction::Forward => Walk::Step(Grain::Statement),
+                    Direction::Reverse => Walk::Step(Grain::Instruction),
+                }
+            }
+            Walk::Next(_) if depth(session) > self.depth => Walk::Finish,
+            walk => walk,
+        }
+    }
+
     /// Whether a piece of it, that was done, has led to where it was to go.
     fn is_there(self, session: &Session<'_, Sim>, walked: Walk) -> bool {
+        let is_begin = || is_begin(session.module(), session.machine().state());
         match self.walk {
+            _ if self.aim == Aim::Sequence => {
+                depth(session) <= self.depth && !is_in_start(session) && is_begin()
+            }
             Walk::Finish => depth(session) < self.depth,
             Walk::Next(_) if walked == self.walk => true,
             Walk::Next(grain) => {
-                let is_begin = || is_begin(session.module(), session.machine().state());
                 depth(session) <= self.depth && (grain == Grain::Instruction || is_begin())
             }
             Walk::Step(_) | Walk::Continue | Walk::Recover => true,
@@ -89,6 +136,17 @@ pub(crate) enum Begun {
     Halted(Halt),
     /// It cannot go that way, and has not moved.
     Refused(Halt),
+}
+
+/// How many calls are under way in the first sequence.
+pub(crate) const SEQUENCE_DEPTH: usize = 2;
+
+/// Whether a session stands before the first sequence, or behind it.
+fn is_in_start(session: &Session<'_, Sim>) -> bool {
+    let module = session.module();
+    let function = module.function_at(session.machine().state().pc());
+    let function = function.and_then(|function| module.functions.get(function));
+    function.is_some_and(|function| function.kind == FunctionKind::Start)
 }
 
 fn depth(session: &Session<'_, Sim>) -> usize {

@@ -61,6 +61,13 @@ pub(crate) fn text(module: &Module, reference: u64) -> Result<Value, String> {
     Ok(json!({ "content": found.text }))
 }
 
+/// What stands on a line of a file.
+pub(crate) fn line_text(module: &Module, file: &str, line: usize) -> String {
+    let source = module.sources.iter().find(|source| source.name == file);
+    let text = source.and_then(|source| source.text.lines().nth(line.checked_sub(1)?));
+    text.unwrap_or_default().trim().to_owned()
+}
+
 /// The number of the instruction that a reference and an offset mean; it may be beside the code.
 pub(crate) fn address(reference: &str, offset: i64) -> Result<i64, String> {
     let digits = reference.trim();

@@ -4,25 +4,19 @@
 //! A client always sends a whole group. What it sends again as it was stays, with how often it has
 //! been come to.
 
-use crate::message::{Asked, Client};
+use crate::filters::{self, Filter};
+use crate::message::{Asked, Client, FilterOption};
 use crate::places;
 use crate::server::Loaded;
 use obverse_bytecode::Module;
-use obverse_debugger::{Breakpoint, Expression, Halt, Piece, Places, Session, Subject};
-use obverse_isa::ErrorId;
+use obverse_debugger::{Breakpoint, Counts, Expression, Halt, Piece, Places, Session};
 use obverse_sim::Sim;
-use obverse_vm::{Direction, Stop};
+use obverse_vm::Stop;
 use serde_json::{Value, json};
+use std::collections::BTreeSet;
 
 /// The most breakpoints of a group.
 const MAX_POINTS: usize = 1000;
-/// The filter of errors that are due.
-const DUE: &str = "due";
-/// The filter of errors where they are raised.
-const RAISED: &str = "raised";
-/// What the filter of one error begins with.
-const ERROR: &str = "error ";
-
 /// What a client sets at once.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(crate) enum Group {
@@ -58,7 +52,7 @@ struct Point {
 /// The breakpoints that a client has set.
 pub(crate) struct Points {
     points: Vec<Point>,
-    filters: Vec<String>,
+    filters: Vec<Filter>,
 }
 
 /// A breakpoint, and what a client is told of it.
@@ -67,7 +61,7 @@ type Made = (Breakpoint, Value);
 impl Points {
     /// None yet; of errors, those that are due.
     pub(crate) fn new() -> Self {
-        Self { points: Vec::new(), filters: vec![DUE.to_owned()] }
+        Self { points: Vec::new(), filters: vec![Filter::due()] }
     }
 
     /// Set a group; what is in its place is told of each.
@@ -101,53 +95,34 @@ impl Points {
     pub(crate) fn set_errors(
         &mut self,
         session: &mut Session<'_, Sim>,
-        filters: Vec<String>,
+        asked: Vec<FilterOption>,
     ) -> Value {
         let is_error = |point: &mut Point| point.group == Group::Errors;
         let before: Vec<Point> = self.points.extract_if(.., is_error).collect();
         drop_all(session, &before);
         let module = session.module();
-        let mut answers = Vec::new();
-        for filter in &filters {
-            let of: Vec<usize> = match filter.strip_prefix(ERROR) {
-                _ if filter == RAISED => (0..module.errors.len()).collect(),
-                Some(name) => errors_of(module, name),
-                None => Vec::new(),
-            };
-            let is_known = !of.is_empty() || filter == DUE || filter == RAISED;
-            answers.push(match is_known {
-                true => json!({ "verified": true }),
-                false => json!({
-                    "verified": false,
-                    "message": format!("the program declares no such error: `{filter}`"),
-                }),
-            });
-            for index in of {
-                let expression = Expression::of(module, Subject::Error(ErrorId(index as u16)));
-                let mut breakpoint = Breakpoint::on_change(expression);
-                // Going back over where it was raised is no news.
-                breakpoint.direction = Some(Direction::Forward);
-                breakpoint.condition = {
-                    let name = format!("error {}", module.errors[index].name);
-                    Expression::condition(module, 0, &name).ok()
-                };
-                let id = Some(session.add_breakpoint(breakpoint));
-                let (group, asked) = (Group::Errors, json!(module.errors[index].name));
-                self.points.push(Point { group, asked, id, answer: Value::Null });
-            }
+        let found: Vec<_> = asked.iter().map(|asked| Filter::of(module, asked)).collect();
+        let answer = |found: &Result<Filter, String>| match found {
+            Ok(_) => json!({ "verified": true }),
+            Err(why) => json!({ "verified": false, "message": why }),
+        };
+        let answers: Vec<Value> = found.iter().map(answer).collect();
+        self.filters = found.into_iter().flatten().collect();
+        let raised = self.filters.iter().flat_map(|filter| filter.raised(module));
+        let raised: BTreeSet<usize> = raised.collect();
+        for index in raised {
+            let id = Some(session.add_breakpoint(filters::where_raised(module, index)));
+            let (group, asked) = (Group::Errors, json!(module.errors[index].name));
+            self.points.push(Point { group, asked, id, answer: Value::Null });
         }
-        self.filters = filters;
         json!({ "breakpoints": answers })
     }
 
     /// Whether a run is to go on from a halt as if nothing had been: an error that is due, where
     /// the client wants to hear of none.
-    pub(crate) fn passes(&self, module: &Module, halt: &Halt) -> bool {
+    pub(crate) fn passes(&self, halt: &Halt) -> bool {
         let Halt::Stopped(Stop::Due { error, .. }) = halt else { return false };
-        let name = module.errors.get(error.index()).map_or("", |error| error.name.as_str());
-        !self.filters.iter().any(|filter| {
-            filter == DUE || filter == RAISED || filter.strip_prefix(ERROR) == Some(name)
-        })
+        !self.filters.iter().any(|filter| filter.is_of(error.index()))
     }
 
     /// Why a run stops at these, and the error if it is for one.
@@ -176,29 +151,6 @@ fn drop_all(session: &mut Session<'_, Sim>, points: &[Point]) {
         // It is there, and were it not, nothing would be left to drop.
         let _ = session.drop_breakpoint(id);
     }
-}
-
-fn errors_of(module: &Module, name: &str) -> Vec<usize> {
-    module.errors.iter().position(|error| error.name == name).into_iter().collect()
-}
-
-/// What a client can be asked about errors: those of a program, once there is one.
-pub(crate) fn filters(module: Option<&Module>) -> Value {
-    let filter = |filter: &str, label: &str, description: &str, default: bool| {
-        json!({
-            "filter": filter, "label": label, "description": description, "default": default,
-        })
-    };
-    let mut all = vec![
-        filter(DUE, "Errors that are due", "Stop where the program responds to an error.", true),
-        filter(RAISED, "Errors when raised", "Stop behind whatever raises an error.", false),
-    ];
-    for error in module.map(|module| &module.errors).into_iter().flatten() {
-        let description = format!("Stop where `{}` is raised, and where it is due.", error.name);
-        let label = format!("Error {}", error.name);
-        all.push(filter(&format!("{ERROR}{}", error.name), &label, &description, false));
-    }
-    json!(all)
 }
 
 fn make(
@@ -275,6 +227,9 @@ fn at(module: &Module, places: Places, given: &Asked) -> Result<Breakpoint, Stri
 
 fn of_data(module: &Module, given: &Asked) -> Result<Made, String> {
     let id = given.data_id.as_deref().ok_or("it must say what is watched")?;
+    if let Some(access) = given.access_type.as_deref().filter(|access| *access != "write") {
+        return Err(format!("a run stops where it is changed, and not for `{access}`"));
+    }
     let (function, text) = id.split_once(':').unwrap_or(("0", id));
     let function = function.parse().map_err(|_| format!("`{id}` is nothing that is watched"))?;
     let expression =
@@ -309,27 +264,35 @@ fn qualified(
         let condition = Expression::condition(module, function, &text);
         condition.map_err(|error| format!("condition: {error}"))
     });
-    let ignored = text(&given.hit_condition).map(|text| ignored(&text));
+    let hits = text(&given.hit_condition).map(|text| hits(&text)).transpose()?;
+    let (ignored, counts) = hits.unwrap_or_default();
     let log = text(&given.log_message).map(|text| pieces(module, function, &text));
     Ok(Breakpoint {
         condition: condition.transpose()?,
-        ignored: ignored.transpose()?.unwrap_or(0),
+        ignored,
+        counts,
         log: log.transpose()?,
         ..breakpoint
     })
 }
 
-/// How often a breakpoint is passed: `3` and `>= 3` stop from the third time on, `> 3` behind it.
-fn ignored(text: &str) -> Result<u64, String> {
+/// How often a breakpoint is passed, and where it stops then: `3` and `>= 3` stop from the third
+/// time on, `> 3` behind it, `== 3` at it, `% 3` at every third.
+fn hits(text: &str) -> Result<(u64, Counts), String> {
     let text = text.trim();
-    let (number, is_more) = match (text.strip_prefix(">="), text.strip_prefix('>')) {
-        (Some(number), _) => (number, false),
-        (None, Some(number)) => (number, true),
-        (None, None) => (text, false),
+    let digits = text.find(|c: char| c.is_ascii_digit()).unwrap_or(text.len());
+    let (operator, number) = text.split_at(digits);
+    let number = number.parse::<u64>().ok();
+    let passed = number.and_then(|number| number.checked_sub(1));
+    let found = match operator.trim() {
+        "" | ">=" => passed.map(|passed| (passed, Counts::All)),
+        ">" => number.map(|number| (number, Counts::All)),
+        "==" | "=" => passed.and(number).map(|number| (0, Counts::Only(number))),
+        "%" => passed.and(number).map(|number| (0, Counts::Every(number))),
+        _ => None,
     };
-    let wrong = || format!("`{text}` is no hit count: write `3`, `>= 3` or `> 3`");
-    let number: u64 = number.trim().parse().map_err(|_| wrong())?;
-    if is_more { Ok(number) } else { number.checked_sub(1).ok_or_else(wrong) }
+    let forms = "`3`, `>= 3`, `> 3`, `== 3` or `% 3`";
+    found.ok_or_else(|| format!("`{text}` is no hit count: write {forms}"))
 }
 
 /// What a log point tells: text, and between braces what is worked out.
@@ -355,12 +318,14 @@ mod tests {
     use super::*;
 
     #[test]
-    fn hit_counts_say_how_often_it_is_passed() {
-        for (text, expected) in [("1", 0), (" 3 ", 2), (">= 3", 2), (">3", 3), ("> 0", 0)] {
-            assert_eq!(ignored(text), Ok(expected), "{text}");
+    fn hit_counts_say_at_which_hits_it_stops() {
+        for (text, ignored) in [("1", 0), (" 3 ", 2), (">= 3", 2), (">3", 3), ("> 0", 0)] {
+            assert_eq!(hits(text), Ok((ignored, Counts::All)), "{text}");
         }
-        for text in ["0", "-1", "x", "< 3", "", "== 3"] {
-            assert!(ignored(text).is_err(), "{text}");
+        assert_eq!(hits("==3"), Ok((0, Counts::Only(3))));
+        assert_eq!(hits("% 2"), Ok((0, Counts::Every(2))));
+        for text in ["0", "-1", "x", "< 3", "", "== 0", "%0", "%", "3 3", "99999999999999999999"] {
+            assert!(hits(text).is_err(), "{text}");
         }
     }
 

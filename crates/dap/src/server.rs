@@ -1,12 +1,14 @@
 //! A connection: from the first request to where a program is loaded, and then the session over it.
 
+use crate::arguments::wanted;
 use crate::debuggee::Debuggee;
 use crate::frame::Frame;
 use crate::inbox::Inbox;
 use crate::message::{Client, Request, Wanted, request};
 use crate::outbox::Outbox;
 use obverse_bytecode::Verified;
-use obverse_debugger::Recording;
+use obverse_debugger::{Policy, Recording};
+use obverse_recovery::Memory;
 use obverse_sim::Sim;
 use serde_json::{Value, json};
 use std::io::{Read, Write};
@@ -20,14 +22,21 @@ pub enum Begin {
     Recorded(Box<Recording>, Option<Box<Sim>>),
 }
 
+/// Keeps what was learned of errors, or says why it cannot.
+pub type Keep = Box<dyn Fn(&Memory) -> Result<(), String>>;
+
 /// A program that may be run, or was.
 pub struct Loaded {
     /// What runs.
     pub program: Verified,
     /// Where the session begins.
     pub begin: Begin,
-    /// What all chance in the run follows from.
-    pub seed: u64,
+    /// What is done about errors.
+    pub policy: Policy,
+    /// What was learned of them before.
+    pub memory: Memory,
+    /// What is done with what is learned, at the end.
+    pub keep: Option<Keep>,
     /// The path of each source file of the module; none of one that is in no folder.
     pub paths: Vec<Option<PathBuf>>,
     /// What the user is to be told about it, warnings for one.
@@ -135,7 +144,8 @@ impl Server<'_> {
                 _ if !is_initialized => {
                     self.out.refuse(&request, "the first request must be `initialize`");
                 }
-                "launch" | "attach" => match wanted(&request).and_then(|wanted| {
+                "launch" | "attach" => match wanted(&request).and_then(|(wanted, passed_over)| {
+                    passed_over.iter().for_each(|text| self.out.tell("important", text));
                     let loaded = load(&wanted)?;
                     Ok((loaded, wanted))
                 }) {
@@ -168,14 +178,6 @@ impl Server<'_> {
     }
 }
 
-/// What a request wants to debug.
-fn wanted(request: &Request) -> Result<Wanted, String> {
-    match request.command.as_str() {
-        "attach" => request.given().map(Wanted::Attach),
-        _ => request.given().map(Wanted::Launch),
-    }
-}
-
 /// What is there, and nothing else.
 fn capabilities() -> Value {
     json!({
@@ -189,7 +191,9 @@ fn capabilities() -> Value {
         "supportsRestartFrame": true,
         "supportsGotoTargetsRequest": true,
         "supportsExceptionInfoRequest": true,
+        "supportsExceptionFilterOptions": true,
         "supportsDelayedStackTraceLoading": true,
+        "supportsCompletionsRequest": true,
         "supportsLoadedSourcesRequest": true,
         "supportsLogPoints": true,
         "supportsTerminateRequest": true,
@@ -197,6 +201,6 @@ fn capabilities() -> Value {
         "supportsDisassembleRequest": true,
         "supportsSteppingGranularity": true,
         "supportsInstructionBreakpoints": true,
-        "exceptionBreakpointFilters": crate::points::filters(None),
+        "exceptionBreakpointFilters": crate::filters::offered(None),
     })
 }

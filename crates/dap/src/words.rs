@@ -57,7 +57,8 @@ pub(crate) fn halt(session: &Session<'_, Sim>, halt: &Halt) -> Words {
         }
         Halt::EndOfRecording => Words::new("step", END_OF_RECORDING),
         Halt::StartOfRecording => Words::new("entry", "at the start of what is recorded"),
-        Halt::Limit | Halt::Interrupted => Words::new("pause", "paused"),
+        Halt::Interrupted => Words::new("pause", "paused"),
+        Halt::Limit => Words::new("pause", "paused at the limit that it was launched with"),
         Halt::Lost => {
             let text = "the run cannot be shown again: this is a mistake of the debugger";
             Words::wrong("lost", "lost", text.to_owned())
@@ -69,8 +70,8 @@ pub(crate) const HELD: &str =
     "nothing moves before a person's command: `release` in the debug console gives it";
 const CHANGED: &str =
     "a variable was changed by hand here, and nothing recorded what was before: going back ends";
-const END_OF_RECORDING: &str = "at the end of what is recorded: `live` in the debug console goes \
-                                on from here, and commands the workcell";
+const END_OF_RECORDING: &str = "at the end of what is recorded: `goto end` in the debug console \
+                                goes on from here, and commands the workcell";
 
 fn stopped(module: &Module, stop: &Stop) -> Words {
     let error = |index: usize| module.errors.get(index).map_or("", |error| error.name.as_str());
@@ -112,7 +113,7 @@ fn ended(module: &Module, ending: &Ending) -> Words {
 fn refused(session: &Session<'_, Sim>, refusal: &Refusal) -> Words {
     let passed = session.why().never.map(|never| never.moment);
     let text = passed.map(|moment| {
-        format!("`rewind {moment}` in the debug console shows what was, and commands nothing")
+        format!("`goto {moment}` in the debug console shows what was, and commands nothing")
     });
     Words { text, ..Words::new("never", why_not(session.module(), refusal)) }
 }

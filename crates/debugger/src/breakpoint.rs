@@ -23,6 +23,8 @@ pub struct Breakpoint {
     pub condition: Option<Expression>,
     /// How often it is passed before it stops.
     pub ignored: u64,
+    /// Of the times that it is come to and not passed, those at which it stops.
+    pub counts: Counts,
     /// How often it has been come to.
     pub hits: u64,
     /// Whether it stops at all.
@@ -33,6 +35,28 @@ pub struct Breakpoint {
     pub direction: Option<Direction>,
     /// Told, with what is between braces worked out, in place of a stop.
     pub log: Option<Vec<Piece>>,
+}
+
+/// At which of the times that it is come to a breakpoint stops.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Counts {
+    /// At all of them.
+    #[default]
+    All,
+    /// At this one, counted from 1.
+    Only(u64),
+    /// At those whose number can be divided by this.
+    Every(u64),
+}
+
+impl Counts {
+    fn holds(self, hits: u64) -> bool {
+        match self {
+            Self::All => true,
+            Self::Only(number) => hits == number,
+            Self::Every(number) => hits.is_multiple_of(number),
+        }
+    }
 }
 
 /// A piece of what a breakpoint tells.
@@ -311,12 +335,18 @@ impl Breakpoint {
             what,
             condition: None,
             ignored: 0,
+            counts: Counts::All,
             hits: 0,
             is_enabled: true,
             is_temporary: false,
             direction: None,
             log: None,
         }
+    }
+
+    /// Whether it stops at the hit that was counted last.
+    pub(crate) fn stops_now(&self) -> bool {
+        self.hits > self.ignored && self.counts.holds(self.hits)
     }
 
     /// Whether it is come to here, going some way from what was before.

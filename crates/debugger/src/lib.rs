@@ -34,7 +34,7 @@ pub mod timeline;
 mod wire;
 mod writers;
 
-pub use breakpoint::{Breakpoint, Hit, Piece, PlaceError, Places, What};
+pub use breakpoint::{Breakpoint, Counts, Hit, Piece, PlaceError, Places, What};
 pub use condition::{ConditionError, Expression};
 pub use file::{Before, CellFile, Head, TapeFile, Writer};
 pub use place::{Mode, Position, SourcePlace};

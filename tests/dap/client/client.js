@@ -58,7 +58,8 @@ async function live(client) {
   ]);
   await stops(client, () => client.reverseContinueRequest({ threadId }));
   assert.strictEqual((await top(client, threadId)).line, behind);
-  await jumps(client, "rewind");
+  await client.evaluateRequest({ expression: "bookmark here", context: "repl" });
+  await jumps(client, "goto here");
   await stops(client, () => client.reverseContinueRequest({ threadId }));
   await stops(client, () => client.reverseContinueRequest({ threadId }));
   const start = await top(client, threadId);
@@ -99,13 +100,13 @@ async function recorded(client) {
   await back();
   assert.strictEqual((await top(client, threadId)).line, throws);
   assert.strictEqual(await value(client, "held"), "pin_1");
-  await jumps(client, "live");
+  await jumps(client, "goto end");
   assert.strictEqual(await value(client, "steps"), steps);
-  assert.match(await jumps(client, "error"), new RegExp(`:${throws}\\b`));
+  assert.match(await jumps(client, "goto error"), new RegExp(`:${throws}\\b`));
   assert.strictEqual((await top(client, threadId)).line, throws);
 
   // What would have been, had the second pin been fetched first.
-  await jumps(client, "rewind 0");
+  await jumps(client, "goto start");
   await stops(client, () => client.nextRequest({ threadId }));
   assert.match(await jumps(client, "what-if"), /^what-if/);
   await client.evaluateRequest({ expression: "set next_pin = 2", context: "repl" });
@@ -114,7 +115,7 @@ async function recorded(client) {
   assert.match(tried.description, /the program has ended/, "nothing is thrown");
   assert.strictEqual(await value(client, "next_pin"), "3");
   await jumps(client, "leave");
-  await jumps(client, "live");
+  await jumps(client, "goto end");
   assert.strictEqual(await value(client, "steps"), steps, "the recording is as it was");
 }
 

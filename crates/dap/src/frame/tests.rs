@@ -48,19 +48,23 @@ fn framed(message: &str) -> String {
 }
 
 fn whys(frames: &[Frame]) -> Vec<&str> {
-    let why = |frame| match frame {
-        Frame::Wrong(why) => Some(why.as_str()),
-        _ => None,
-    };
-    frames.iter().filter_map(why).collect()
+    let mut whys = Vec::new();
+    for frame in frames {
+        if let Frame::Wrong(why) = frame {
+            whys.push(why.as_str());
+        }
+    }
+    whys
 }
 
 fn messages(frames: &[Frame]) -> Vec<&[u8]> {
-    let message = |frame| match frame {
-        Frame::Message(bytes) => Some(bytes.as_slice()),
-        _ => None,
-    };
-    frames.iter().filter_map(message).collect()
+    let mut messages = Vec::new();
+    for frame in frames {
+        if let Frame::Message(bytes) = frame {
+            messages.push(bytes.as_slice());
+        }
+    }
+    messages
 }
 
 #[test]
@@ -145,5 +149,46 @@ fn what_is_too_long_is_passed_over_in_little_memory() {
 fn half_a_message_is_said_to_be_one() {
     for half in ["Content-Le", "Content-Length: 3\r\n", "Content-Length: 3\r\n\r\n{}"] {
         assert!(matches!(all(half.as_bytes())[..], [Frame::End(Some(_))]), "{half}");
+    }
+}
+
+/// Whatever comes before, put together from what headers are made of, no message behind it is lost.
+#[test]
+fn whatever_comes_before_no_message_behind_it_is_lost() {
+    const PARTS: [&str; 20] = [
+        "Content-Length: ",
+        "content-length:",
+        "Content-Le",
+        "Content-Type: x\r\n",
+        ":",
+        "\r\n",
+        "\n",
+        "\r",
+        "0",
+        "1",
+        "7",
+        "33",
+        "99999999999",
+        "{}",
+        "{\"seq\":",
+        "é",
+        " ",
+        "abc",
+        "-",
+        "\u{0}",
+    ];
+    let mut state: u64 = 1;
+    let mut random = |below: usize| {
+        state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1);
+        (state >> 33) as usize % below
+    };
+    for round in 0..20_000 {
+        let count = random(12);
+        let before: String = (0..count).map(|_| PARTS[random(PARTS.len())]).collect();
+        let bytes = format!("{before}{}{}", framed("{\"a\":1}"), framed("[\"b\"]"));
+        let frames = found(bytes.as_bytes(), 1 + random(80));
+        let messages = messages(&frames);
+        let is_last = messages.ends_with(&[b"{\"a\":1}", b"[\"b\"]"]);
+        assert!(is_last, "round {round}: {before:?}: {frames:?}");
     }
 }

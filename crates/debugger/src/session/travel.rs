@@ -269,7 +269,7 @@ impl<'p, C: Workcell> Session<'p, C> {
             let breakpoint = self.breakpoints.iter_mut().find(|it| it.id == hit.id);
             let Some(breakpoint) = breakpoint else { continue };
             breakpoint.hits += 1;
-            if breakpoint.hits > breakpoint.ignored {
+            if breakpoint.stops_now() {
                 match &hit.log {
                     Some(text) => self.told.push((hit.id, text.clone())),
                     None => hits.push(hit),
