@@ -428,3 +428,31 @@ fn the_prompt_says_what_is_tried_and_bookmarks_go_with_it() {
     assert_eq!((names(15), names(17)), (vec!["begun", "tried"], vec!["begun", "over"]));
     assert_eq!(all[18]["done"], true);
 }
+
+#[test]
+fn values_have_units_and_lines_that_are_not_there_are_refused() {
+    let bench = bench("units");
+    let all = done(
+        &bench,
+        &["p joint 1 - joint 1", "p 2 * 3 N", "p 3 mm + 2 cm", "p force > 1000", "display time"],
+    );
+    assert_eq!(text(&all[0]), "joint 1 - joint 1 = 0 deg");
+    assert_eq!((&all[0]["value"], &all[0]["unit"]), (&json!(0.0), &json!("rad")));
+    assert_eq!(
+        (text(&all[1]), text(&all[2])),
+        ("2 * 3 N = 6 N".into(), "3 mm + 2 cm = 23 mm".into())
+    );
+    assert_eq!((&all[3]["unit"], &all[4]["unit"]), (&Value::Null, &json!("s")));
+    for (command, why) in [
+        ("p 3 mm + 2", "a length and a number without a unit cannot be added"),
+        ("p 9223372036854775807 + total + 1", "an overflow"),
+        ("p total / 0", "a division by zero"),
+        ("watch output 99", "there is no output 99: they are numbered from 0 to 7, at column 8"),
+        ("p input 99", "there is no input 99"),
+        ("b 4 if output 99", "there is no output 99"),
+        ("p joint 9", "the joints are numbered from 1 to 6"),
+    ] {
+        let answer = answers(&bench, &[command]).remove(0);
+        assert!(answer["why"].as_str().is_some_and(|it| it.contains(why)), "{command}: {answer}");
+    }
+}

@@ -139,7 +139,7 @@ fn what_ended_a_run_is_recovered_from_in_a_what_if_from_its_tape() {
     bench.refuses(&["debug", "--tape", "t.tape", "--memory", "m.toml"], &["no `--memory`"]);
 }
 
-/// Where the strategy calls a person, a session ends where the run does, however it is gone on with.
+/// Where the strategy calls a person, a session ends where the run does, however one goes on.
 #[test]
 fn a_strategy_that_gives_up_ends_a_session_where_it_ends_the_run() {
     let bench = Bench::new("debug_given_up");

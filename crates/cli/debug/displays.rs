@@ -72,7 +72,8 @@ pub(super) fn display(front: &mut Front<'_>, rest: &str) -> Done {
     let value = front.session.look(|look| expression.value(look));
     let line = format!("{number}: {} = {value}", expression.text());
     front.displays.all.push((number, expression));
-    Ok(Answer::line(line).with("number", number).with("value", values::json_of(&value)))
+    let answer = Answer::line(line).with("number", number);
+    Ok(answer.with("value", values::json_of(&value)).with("unit", values::unit_of(&value)))
 }
 
 pub(super) fn undisplay(front: &mut Front<'_>, rest: &str) -> Done {

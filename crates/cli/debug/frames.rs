@@ -3,7 +3,7 @@
 use super::{Answer, Done, Front};
 use crate::report;
 use obverse_debugger::session::FrameView;
-use obverse_debugger::{Expression, Subject};
+use obverse_debugger::{ConditionError, Expression, Subject};
 use serde_json::{Value, json};
 
 impl Front<'_> {
@@ -27,8 +27,7 @@ impl Front<'_> {
     /// An expression whose names are those of the call that is looked at.
     pub(super) fn expression(&self, text: &str) -> Result<Expression, String> {
         let function = self.function();
-        let found =
-            Expression::parse(self.module, function, text).map_err(|why| why.to_string())?;
+        let found = self.checked(Expression::parse(self.module, function, text))?;
         let calls = self.calls();
         let is_hidden = calls.iter().take(self.selected).any(|it| it.function as usize == function);
         let is_local = |subject: &&Subject| matches!(subject, Subject::Local(..));
@@ -40,6 +39,16 @@ impl Front<'_> {
             )),
             None => Ok(found),
         }
+    }
+
+    /// An expression that asks about no line that the workcell has not.
+    pub(super) fn checked(
+        &self,
+        found: Result<Expression, ConditionError>,
+    ) -> Result<Expression, String> {
+        let facts = &self.session.recording().facts;
+        let found = found.and_then(|found| found.check_lines(facts).map(|()| found));
+        found.map_err(|why| why.to_string())
     }
 
     /// Look at a call of this number.

@@ -89,7 +89,7 @@ fn condition_of(
     text: Option<&str>,
 ) -> Result<Option<Expression>, String> {
     let condition = text.map(|text| Expression::condition(front.module, function, text));
-    condition.transpose().map_err(|why| why.to_string())
+    condition.map(|condition| front.checked(condition)).transpose()
 }
 
 pub(super) fn watch(front: &mut Front<'_>, rest: &str) -> Done {

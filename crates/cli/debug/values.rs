@@ -5,7 +5,7 @@ use super::{Answer, Done, Front, frames};
 use crate::commands::reach::margin;
 use crate::{report, story};
 use obverse_debugger::session::{Action, Variable};
-use obverse_debugger::{Subject, Value};
+use obverse_debugger::{Subject, Unit, Value};
 use obverse_geometry::{JointConfiguration, Pose};
 use obverse_sim::kinematics;
 use obverse_vm::Direction;
@@ -20,11 +20,20 @@ const GAUGE: usize = 24;
 pub(super) fn json_of(value: &Value) -> Json {
     match value {
         Value::Int(value) => json!(value),
-        Value::Real(value) => json!(value),
+        Value::Real(value) | Value::Quantity(value, _) => json!(value),
         Value::Bool(value) => json!(value),
         Value::Joints(joints) => json!(joints),
         Value::Name(name) => json!(name),
-        Value::Absent => Json::Null,
+        Value::Absent | Value::Wrong(_) => Json::Null,
+    }
+}
+
+/// The unit of a number for machines, which are told numbers in SI units.
+pub(super) fn unit_of(value: &Value) -> Option<String> {
+    match value {
+        Value::Quantity(_, unit) => Some(unit.to_string()),
+        Value::Joints(_) => Some(Unit::ANGLE.to_string()),
+        _ => None,
     }
 }
 
@@ -49,7 +58,11 @@ pub(super) fn print(front: &mut Front<'_>, rest: &str) -> Done {
     }
     let expression = front.expression(rest)?;
     let value = front.session.look(|look| expression.value(look));
-    Ok(Answer::line(format!("{rest} = {value}")).with("value", json_of(&value)))
+    if let Value::Wrong(why) = value {
+        return Err(format!("`{rest}` cannot be worked out: {why}"));
+    }
+    let answer = Answer::line(format!("{rest} = {value}"));
+    Ok(answer.with("value", json_of(&value)).with("unit", unit_of(&value)))
 }
 
 pub(super) fn locals(front: &mut Front<'_>, rest: &str) -> Done {
@@ -134,10 +147,10 @@ fn shown(variable: &Variable) -> Vec<String> {
             };
             return joints.iter().zip(1..).map(joint).collect();
         }
-        (Some(Subject::Force), Value::Real(force_n)) => {
+        (Some(Subject::Force), Value::Quantity(force_n, _)) => {
             format!("{name:<8} {force_n:>8.2} N    [{}]", gauge(*force_n, [0.0, 50.0]))
         }
-        (Some(Subject::Time), Value::Real(time_s)) => format!("{name:<8} {time_s:>8.2} s"),
+        (Some(Subject::Time), Value::Quantity(time_s, _)) => format!("{name:<8} {time_s:>8.2} s"),
         (_, Value::Name(text)) if text.is_empty() => format!("{name:<8} none"),
         (_, value) => format!("{name:<8} {value}"),
     }]
@@ -252,9 +265,4 @@ pub(super) fn why(front: &mut Front<'_>, _: &str) -> Done {
         })
     });
     Ok(Answer::lines(lines).with("never", never).with("ends", ends).with("actions", why.actions))
-}
-
-/// The unit of a value for machines.
-pub(super) fn unit_of(_: &Value) -> Option<String> {
-    None
 }

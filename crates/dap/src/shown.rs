@@ -165,10 +165,10 @@ fn variable(variable: &Variable) -> Value {
 pub(crate) fn type_name(value: &Known) -> &'static str {
     match value {
         Known::Int(_) => "integer",
-        Known::Real(_) => "real",
+        Known::Real(_) | Known::Quantity(..) => "real",
         Known::Bool(_) => "truth value",
         Known::Joints(_) => "joints",
         Known::Name(_) => "name",
-        Known::Absent => "",
+        Known::Absent | Known::Wrong(_) => "",
     }
 }

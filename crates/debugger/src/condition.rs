@@ -3,7 +3,9 @@
 //! Their names are those of a place in a program. What is wrong with one is said with its place in
 //! the text; a text and its nesting are bounded. Read `parse`, which makes them, beside this.
 
-use crate::subject::{Look, Subject, Value};
+use crate::recording::Facts;
+use crate::subject::{Look, Subject, Value, Wrong};
+use crate::unit::Unit;
 use obverse_bytecode::Module;
 
 mod parse;
@@ -31,6 +33,8 @@ impl std::error::Error for ConditionError {}
 pub struct Expression {
     text: String,
     root: Node,
+    /// What it measures, if that is known.
+    unit: Option<Unit>,
 }
 
 #[derive(Clone, Debug, PartialEq)]
@@ -64,8 +68,8 @@ impl Expression {
     /// # Errors
     /// What is wrong with it, and where.
     pub fn parse(module: &Module, function: usize, text: &str) -> Result<Self, ConditionError> {
-        let (root, _) = parse::parse(module, function, text)?;
-        Ok(Self { text: text.trim().to_owned(), root })
+        let (root, kind) = parse::parse(module, function, text)?;
+        Ok(Self { text: text.trim().to_owned(), root, unit: kind.unit() })
     }
 
     /// The same, if it is true or false.
@@ -78,13 +82,13 @@ impl Expression {
             let why = "this is neither true nor false: compare it with something".to_owned();
             return Err(ConditionError { at: 0, why });
         }
-        Ok(Self { text: text.trim().to_owned(), root })
+        Ok(Self { text: text.trim().to_owned(), root, unit: None })
     }
 
     /// Of one thing.
     #[must_use]
     pub fn of(module: &Module, subject: Subject) -> Self {
-        Self { text: subject.name(module), root: Node::Subject(subject) }
+        Self { text: subject.name(module), root: Node::Subject(subject), unit: None }
     }
 
     /// The text.
@@ -96,7 +100,37 @@ impl Expression {
     /// What it is at a moment.
     #[must_use]
     pub fn value(&self, look: &Look<'_>) -> Value {
-        self.root.value(look)
+        match (self.root.value(look), self.unit) {
+            (Value::Real(value), Some(unit)) => Value::Quantity(value, unit),
+            (value, _) => value,
+        }
+    }
+
+    /// Whether a workcell has the outputs and the inputs that it asks about.
+    ///
+    /// # Errors
+    /// One that it has not, and which there are.
+    pub fn check_lines(&self, facts: &Facts) -> Result<(), ConditionError> {
+        for subject in self.subjects() {
+            let (bit, kind, count) = match *subject {
+                Subject::Output(bit) => (bit, "output", facts.outputs),
+                Subject::Input(bit) => (bit, "input", facts.inputs),
+                _ => continue,
+            };
+            if bit >= count {
+                let why = match count {
+                    0 => format!("the workcell has no {kind}s"),
+                    1 => format!("there is no {kind} {bit}: the workcell has {kind} 0 alone"),
+                    _ => format!(
+                        "there is no {kind} {bit}: they are numbered from 0 to {}",
+                        count - 1
+                    ),
+                };
+                let at = self.text.find(&bit.to_string()).unwrap_or(0);
+                return Err(ConditionError { at, why });
+            }
+        }
+        Ok(())
     }
 
     /// Whether it is true at a moment.
@@ -148,8 +182,9 @@ impl Node {
     fn of_one(&self, operand: Value) -> Value {
         match (self, operand) {
             (Self::Not(_), Value::Bool(value)) => Value::Bool(!value),
-            (Self::Minus(_), Value::Int(value)) => Value::Int(value.wrapping_neg()),
-            (Self::Minus(_), Value::Real(value)) => Value::Real(-value),
+            (Self::Minus(_), Value::Int(value)) => integer(value.checked_neg()),
+            (Self::Minus(_), Value::Real(value) | Value::Quantity(value, _)) => Value::Real(-value),
+            (_, Value::Wrong(why)) => Value::Wrong(why),
             _ => Value::Absent,
         }
     }
@@ -158,6 +193,7 @@ impl Node {
 impl Operator {
     fn of(self, left: &Value, right: &Value) -> Value {
         match (left, right) {
+            (Value::Wrong(why), _) | (_, Value::Wrong(why)) => Value::Wrong(*why),
             (Value::Absent, _) | (_, Value::Absent) => Value::Absent,
             (Value::Bool(left), Value::Bool(right)) => match self {
                 Self::Or => Value::Bool(*left || *right),
@@ -181,10 +217,11 @@ impl Operator {
 
     fn of_integers(self, left: i64, right: i64) -> Value {
         match self {
-            Self::Plus => Value::Int(left.wrapping_add(right)),
-            Self::Minus => Value::Int(left.wrapping_sub(right)),
-            Self::Times => Value::Int(left.wrapping_mul(right)),
-            Self::Over => left.checked_div(right).map_or(Value::Absent, Value::Int),
+            Self::Plus => integer(left.checked_add(right)),
+            Self::Minus => integer(left.checked_sub(right)),
+            Self::Times => integer(left.checked_mul(right)),
+            Self::Over if right == 0 => Value::Wrong(Wrong::DivisionByZero),
+            Self::Over => integer(left.checked_div(right)),
             Self::Equal => Value::Bool(left == right),
             Self::Unequal => Value::Bool(left != right),
             Self::Less => Value::Bool(left < right),
@@ -212,10 +249,14 @@ impl Operator {
     }
 }
 
+fn integer(value: Option<i64>) -> Value {
+    value.map_or(Value::Wrong(Wrong::Overflow), Value::Int)
+}
+
 fn real(value: &Value) -> Option<f64> {
     match value {
         Value::Int(value) => Some(*value as f64),
-        Value::Real(value) => Some(*value),
+        Value::Real(value) | Value::Quantity(value, _) => Some(*value),
         _ => None,
     }
 }

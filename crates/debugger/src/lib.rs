@@ -10,7 +10,8 @@
 //! that write and read it; [`mod@drive`], the clock; [`timeline`], the copies; [`rewound`], a
 //! moment shown; [`run`], one line of history, and how a recovery drives it (`hops`) and would
 //! know it (`retrace`); [`notes`], what it did; [`subject`] and
-//! [`condition`], what can be asked; `writers`, what can change that; [`breakpoint`]; [`place`];
+//! [`condition`], what can be asked, and [`unit`], what it measures; `writers`, what can change
+//! that; [`breakpoint`]; [`place`];
 //! [`session`], what fronts use.
 //! It knows modules and machines, and neither source languages nor how anything is shown.
 
@@ -31,6 +32,7 @@ pub mod session;
 pub mod subject;
 pub mod taped;
 pub mod timeline;
+pub mod unit;
 mod wire;
 mod writers;
 
@@ -41,5 +43,6 @@ pub use place::{Mode, Position, SourcePlace};
 pub use recording::{Moment, Recording};
 pub use run::{NoFork, Run};
 pub use session::{Change, Declined, Grain, Halt, Policy, Session, Walk, Why};
-pub use subject::{Look, Subject, Value};
+pub use subject::{Look, Subject, Value, Wrong};
 pub use taped::Taped;
+pub use unit::Unit;

@@ -2,6 +2,7 @@
 //! workcell. Knows names and values, and nothing of how a moment is reached.
 
 use crate::recording::World;
+use crate::unit::Unit;
 use obverse_bytecode::text::nearest;
 use obverse_bytecode::{LoopName, Mentioned, Module};
 use obverse_isa::{ErrorId, GlobalId, Instr, LocalId, Setting, SpeedId, Type};
@@ -81,8 +82,10 @@ pub enum Subject {
 pub enum Value {
     /// An integer.
     Int(i64),
-    /// A real, in SI units.
+    /// A real of which it is not known what it measures, in SI units.
     Real(f64),
+    /// A real and what it measures, in SI units.
+    Quantity(f64, Unit),
     /// A truth value or a level.
     Bool(bool),
     /// Six joints, in radians.
@@ -91,6 +94,26 @@ pub enum Value {
     Name(String),
     /// There is none here: no such call is under way, or it was never read.
     Absent,
+    /// It cannot be worked out.
+    Wrong(Wrong),
+}
+
+/// Why something cannot be worked out.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Wrong {
+    /// It is beyond the integers that there are.
+    Overflow,
+    /// An integer is divided by zero.
+    DivisionByZero,
+}
+
+impl std::fmt::Display for Wrong {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        match self {
+            Self::Overflow => write!(f, "an overflow: an integer has no more than 64 bits"),
+            Self::DivisionByZero => write!(f, "a division by zero"),
+        }
+    }
 }
 
 impl PartialEq for Value {
@@ -99,10 +122,14 @@ impl PartialEq for Value {
         match (self, other) {
             (Self::Int(a), Self::Int(b)) => a == b,
             (Self::Real(a), Self::Real(b)) => a.to_bits() == b.to_bits(),
+            (Self::Quantity(a, of), Self::Quantity(b, other)) => {
+                a.to_bits() == b.to_bits() && of == other
+            }
             (Self::Bool(a), Self::Bool(b)) => a == b,
             (Self::Joints(a), Self::Joints(b)) => a.map(f64::to_bits) == b.map(f64::to_bits),
             (Self::Name(a), Self::Name(b)) => a == b,
             (Self::Absent, Self::Absent) => true,
+            (Self::Wrong(a), Self::Wrong(b)) => a == b,
             _ => false,
         }
     }
@@ -113,13 +140,15 @@ impl std::fmt::Display for Value {
         match self {
             Self::Int(value) => value.fmt(f),
             Self::Real(value) => write!(f, "{value:?}"),
+            Self::Quantity(value, unit) => f.write_str(&unit.shown(*value)),
             Self::Bool(value) => value.fmt(f),
             Self::Joints(joints) => {
-                let joints = joints.map(|joint| format!("{joint:.4}")).join(", ");
-                write!(f, "[{joints}] rad")
+                let joints = joints.map(|joint| format!("{:.2}", joint.to_degrees())).join(", ");
+                write!(f, "[{joints}] deg")
             }
             Self::Name(name) => f.write_str(name),
             Self::Absent => write!(f, "not there"),
+            Self::Wrong(why) => why.fmt(f),
         }
     }
 }
@@ -150,7 +179,7 @@ pub fn bits(module: &Module, of_type: Type, value: &Value) -> Option<u64> {
     match (of_type, value) {
         (Type::Int, Value::Int(value)) => Some(value.cast_unsigned()),
         (Type::Real, Value::Int(value)) => Some((*value as f64).to_bits()),
-        (Type::Real, Value::Real(value)) => Some(value.to_bits()),
+        (Type::Real, Value::Real(value) | Value::Quantity(value, _)) => Some(value.to_bits()),
         (Type::Bool, Value::Bool(value)) => Some(u64::from(*value)),
         (Type::Joints, Value::Name(name)) => {
             index(module.joints.iter().position(|(known, _)| known == name))
@@ -200,10 +229,11 @@ impl Subject {
             Self::Input(bit) => bool(look.world.input(bit)),
             Self::Joint(index) => {
                 let joints = look.world.joints();
-                joints.get(usize::from(index)).map_or(Value::Absent, |joint| Value::Real(*joint))
+                let angle = |joint: &f64| Value::Quantity(*joint, Unit::ANGLE);
+                joints.get(usize::from(index)).map_or(Value::Absent, angle)
             }
             Self::Joints => Value::Joints(look.world.joints()),
-            Self::Force => Value::Real(look.world.force_n()),
+            Self::Force => Value::Quantity(look.world.force_n(), Unit::FORCE),
             Self::Held => match look.world.held() {
                 Some(item) => {
                     let number = || format!("item {}", item.0);
@@ -213,10 +243,15 @@ impl Subject {
             },
             Self::Setting(setting) => {
                 let bits = look.state.settings()[setting as usize];
-                value(look.module, setting.of_type(), bits)
+                match (setting, value(look.module, setting.of_type(), bits)) {
+                    (Setting::ReverseForceLimit, Value::Real(limit_n)) => {
+                        Value::Quantity(limit_n, Unit::FORCE)
+                    }
+                    (_, value) => value,
+                }
             }
             Self::Error(error) => Value::Bool(look.state.raised().contains(&error)),
-            Self::Time => Value::Real(look.world.now_s()),
+            Self::Time => Value::Quantity(look.world.now_s(), Unit::TIME),
             Self::Steps => Value::Int(look.state.steps().cast_signed()),
         }
     }

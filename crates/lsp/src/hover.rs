@@ -2,6 +2,7 @@
 //! going back over it does, and how far back one can go from there.
 
 use crate::backwards::{Declarations, statement_at};
+use crate::feeling;
 use crate::navigate::symbol_at;
 use crate::program::Program;
 use crate::steps::{Step, Steps};
@@ -9,7 +10,7 @@ use crate::workspace::{InProgram, Workspace};
 use lsp_types::{Contents, Hover, MarkupContent, MarkupKind, Position, Uri};
 use obverse_compiler::symbols::{Symbol, SymbolId, SymbolKind};
 use obverse_reach::Standing;
-use obverse_syntax::ast::Program as Tree;
+use obverse_syntax::ast::{Program as Tree, Statement, StatementKind};
 use obverse_syntax::codes::Code;
 use obverse_syntax::highlight::{Piece, PieceKind, pieces};
 use obverse_syntax::parse_file;
@@ -105,7 +106,7 @@ impl Hovered<'_, '_> {
 
     fn kind(&self, symbol: &Symbol) -> String {
         let kind = symbol.kind.name();
-        let article = if kind.starts_with(['a', 'e', 'i', 'o', 'I']) { "An" } else { "A" };
+        let article = if is_spoken_with_an(kind) { "An" } else { "A" };
         let parent = symbol.parent.map(|parent| &self.program().symbols.symbols[parent]);
         let of_type = symbol.of_type.as_ref().filter(|_| symbol.kind != SymbolKind::Joints);
         match (symbol.kind, of_type, parent) {
@@ -147,7 +148,9 @@ impl Hovered<'_, '_> {
             PieceKind::Reserved | PieceKind::Free => {}
             _ => return None,
         }
-        let statement = statement_at(&self.trees[file], offset)?;
+        let Some(statement) = statement_at(&self.trees[file], offset) else {
+            return Some((feeling::said(&self.trees[file], offset, word)?, span));
+        };
         // What stands in its blocks is said of other statements.
         let in_block = statement
             .blocks()
@@ -159,8 +162,7 @@ impl Hovered<'_, '_> {
         let mut text = String::new();
         if let Some((steps, step)) = self.step_at(statement.span.start) {
             text += &format!("Class *{}*\n\n", step.standing.name());
-            let words = Declarations(self.trees).of_statement(statement);
-            text += &format!("In reverse: {words}");
+            text += &format!("In reverse: {}", self.in_reverse(statement, steps, step));
             text += &format!("\n\n{}", self.ends(steps, step));
         } else {
             let words = Declarations(self.trees).of_statement(statement);
@@ -170,6 +172,23 @@ impl Hovered<'_, '_> {
             text += &format!("In reverse: {words}");
         }
         Some((text, span))
+    }
+
+    /// What going back over a statement does: no further than to what cannot be taken back in it.
+    fn in_reverse(&self, statement: &Statement<'_>, steps: &Steps, step: &Step) -> String {
+        let words = Declarations(self.trees).of_statement(statement);
+        if step.standing != Standing::Never {
+            return words;
+        }
+        let called = match &statement.kind {
+            StatementKind::Call { name, .. } => steps.function(name.value),
+            _ => None,
+        };
+        let stops = called.map(|whole| steps.stops(&whole.left, self.name_of_file()));
+        match stops.unwrap_or_default().as_slice() {
+            [] => "going back ends here".to_owned(),
+            stops => format!("{words}; but going back stops within it, at {}", stops.join(", or ")),
+        }
     }
 
     /// How far back one can go from the statement around a position.
@@ -203,6 +222,11 @@ impl Hovered<'_, '_> {
         let (_, step) = found.find(|(span, _)| span.start == within)?;
         Some((steps, step))
     }
+}
+
+/// Whether `an` stands before it.
+pub(crate) fn is_spoken_with_an(noun: &str) -> bool {
+    noun.starts_with(['a', 'e', 'i', 'o', 'I'])
 }
 
 fn is_blank(line: &str, indent: usize) -> bool {

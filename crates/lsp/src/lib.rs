@@ -12,6 +12,7 @@ mod before;
 mod completion;
 mod diagnostics;
 mod disk;
+mod feeling;
 mod forms;
 mod hints;
 mod hover;

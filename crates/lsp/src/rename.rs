@@ -4,6 +4,7 @@
 //! changed, and every name must lead to the same thing as before.
 
 use crate::diagnostics::changes;
+use crate::hover::is_spoken_with_an;
 use crate::navigate::symbol_at;
 use crate::program::{Program, is_of_library};
 use crate::workspace::{Document, InProgram, Workspace};
@@ -143,7 +144,9 @@ fn difference(before: &Program, after: &Program, name: &str) -> Option<Refusal> 
     let other = old.symbols.iter().find(|symbol| symbol.name == name);
     Some(match other {
         Some(other) => {
-            format!("there is a {} of the name `{name}` already", other.kind.name())
+            let kind = other.kind.name();
+            let article = if is_spoken_with_an(kind) { "an" } else { "a" };
+            format!("there is {article} {kind} of the name `{name}` already")
         }
         None => format!("with the name `{name}` the text would be read otherwise"),
     })

@@ -206,8 +206,12 @@ impl Steps {
             }
             End::Never { spot: None, reason, .. } => Some(reason.clone()),
         };
-        let mut stops: Vec<String> = ends.ends.iter().filter_map(stop).collect();
-        stops.dedup();
+        let mut stops: Vec<String> = Vec::new();
+        for stop in ends.ends.iter().filter_map(stop) {
+            if !stops.contains(&stop) {
+                stops.push(stop);
+            }
+        }
         stops
     }
 

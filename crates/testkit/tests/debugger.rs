@@ -6,7 +6,7 @@ use obverse_compiler::compile;
 use obverse_debugger::recording::Moment;
 use obverse_debugger::{
     Breakpoint, Declined, Expression, Grain, Halt, Mode, Piece, PlaceError, Places, Run, Session,
-    Subject, Value, Walk,
+    Subject, Unit, Value, Walk, Wrong,
 };
 use obverse_isa::GlobalId;
 use obverse_testkit::Ledger;
@@ -314,7 +314,15 @@ fn conditions_say_where_they_are_wrong() {
         ("1 + 2 * 3 == 7 and not false", Value::Bool(true)),
         ("-(2 - 3)", Value::Int(1)),
         ("7 / 2", Value::Int(3)),
-        ("1 / 0", Value::Absent),
+        ("1 / 0", Value::Wrong(Wrong::DivisionByZero)),
+        ("9223372036854775807 + 1", Value::Wrong(Wrong::Overflow)),
+        ("-9223372036854775807 - 2 < 0", Value::Wrong(Wrong::Overflow)),
+        ("3000000000 * -4000000000", Value::Wrong(Wrong::Overflow)),
+        ("2 * 3 N", Value::Quantity(6.0, Unit::FORCE)),
+        ("3 m + 2 m", Value::Quantity(5.0, Unit::LENGTH)),
+        ("8 m / 2 m", Value::Real(4.0)),
+        ("time * 0", Value::Quantity(0.0, Unit::TIME)),
+        ("force < 1000 and time >= 0", Value::Bool(true)),
         ("5 mm < 1 cm", Value::Bool(true)),
         ("180 deg > 3.1 rad", Value::Bool(true)),
         ("holding or output 1", Value::Bool(true)),
@@ -337,6 +345,12 @@ fn conditions_say_where_they_are_wrong() {
         ("joint 7", 6, "from 1 to 6"),
         ("error no", 6, "no error `no`"),
         ("2 # 3", 2, "means nothing"),
+        ("3 mm + 2", 7, "a length and a number without a unit cannot be added; write its unit: um"),
+        ("2 - 3 s", 4, "a number without a unit and a time cannot be subtracted"),
+        ("3 mm < 2 s", 7, "a length and a time cannot be compared"),
+        ("joint 1 > 90", 10, "an angle and a number without a unit cannot be compared"),
+        ("force + count", 8, "a force and a number without a unit cannot be added"),
+        ("3 mm / 2 s > 3 mm", 13, "a speed and a length cannot be compared"),
         ("99999999999999999999", 0, "no number"),
         (&deep, 51, "nested"),
         (&long, 1000, "no longer"),

@@ -2,6 +2,7 @@
 
 use super::{ConditionError, Node, Operator};
 use crate::subject::{Subject, Value, line, nearest_variable, variable};
+use crate::unit::Unit;
 use obverse_bytecode::Module;
 use obverse_bytecode::text::nearest;
 use obverse_isa::{ErrorId, Setting, SpeedId, Type};
@@ -11,10 +12,19 @@ const MAX_TEXT: usize = 1000;
 /// The deepest nesting.
 const MAX_DEPTH: usize = 50;
 
+/// What a number measures.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Measure {
+    /// This, or nothing.
+    Of(Unit),
+    /// A variable's: the program has forgotten its unit, and it goes with any.
+    Unknown,
+}
+
 /// What the value of a part is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Kind {
-    Number,
+    Number(Measure),
     Bool,
     Name,
     Joints,
@@ -23,7 +33,8 @@ pub(super) enum Kind {
 impl Kind {
     fn of(of_type: Type) -> Self {
         match of_type {
-            Type::Int | Type::Real => Self::Number,
+            Type::Int => PLAIN,
+            Type::Real => Self::Number(Measure::Unknown),
             Type::Bool => Self::Bool,
             Type::Joints | Type::Item | Type::Speed | Type::Tool => Self::Name,
         }
@@ -31,11 +42,28 @@ impl Kind {
 
     fn words(self) -> &'static str {
         match self {
-            Self::Number => "a number",
+            Self::Number(_) => "a number",
             Self::Bool => "true or false",
             Self::Name => "a name",
             Self::Joints => "six joints",
         }
+    }
+}
+
+const PLAIN: Kind = Kind::Number(Measure::Of(Unit::NONE));
+
+impl Kind {
+    /// What it measures, if it is a number that measures something.
+    pub(super) fn unit(self) -> Option<Unit> {
+        match self {
+            Self::Number(Measure::Of(unit)) if unit != Unit::NONE => Some(unit),
+            _ => None,
+        }
+    }
+
+    /// Whether it is something of the same kind, whatever it measures.
+    fn is_like(self, other: Self) -> bool {
+        std::mem::discriminant(&self) == std::mem::discriminant(&other)
     }
 }
 
@@ -45,18 +73,18 @@ const WORDS: [&str; 17] = [
     "speed", "tool", "and", "or", "not", "true", "false",
 ];
 
-/// Units, and what one is in SI units.
-const UNITS: [(&str, f64); 10] = [
-    ("um", 1e-6),
-    ("mm", 1e-3),
-    ("cm", 1e-2),
-    ("m", 1.0),
-    ("deg", std::f64::consts::PI / 180.0),
-    ("rad", 1.0),
-    ("ms", 1e-3),
-    ("s", 1.0),
-    ("min", 60.0),
-    ("N", 1.0),
+/// Units, what one is in SI units, and what it measures.
+const UNITS: [(&str, f64, Unit); 10] = [
+    ("um", 1e-6, Unit::LENGTH),
+    ("mm", 1e-3, Unit::LENGTH),
+    ("cm", 1e-2, Unit::LENGTH),
+    ("m", 1.0, Unit::LENGTH),
+    ("deg", std::f64::consts::PI / 180.0, Unit::ANGLE),
+    ("rad", 1.0, Unit::ANGLE),
+    ("ms", 1e-3, Unit::TIME),
+    ("s", 1.0, Unit::TIME),
+    ("min", 60.0, Unit::TIME),
+    ("N", 1.0, Unit::FORCE),
 ];
 
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -136,6 +164,15 @@ fn number_length(text: &str) -> usize {
     end
 }
 
+/// What a product or a quotient measures.
+fn measured((left, right): (Kind, Kind), with: fn(Unit, Unit) -> Option<Unit>) -> Kind {
+    let of = match (left, right) {
+        (Kind::Number(Measure::Of(one)), Kind::Number(Measure::Of(other))) => with(one, other),
+        _ => None,
+    };
+    Kind::Number(of.map_or(Measure::Unknown, Measure::Of))
+}
+
 struct Parser<'t, 'm> {
     module: &'m Module,
     function: usize,
@@ -190,12 +227,43 @@ impl<'t> Parser<'t, '_> {
     }
 
     fn require_at(&self, token: usize, found: Kind, wanted: Kind) -> Result<(), ConditionError> {
-        if found == wanted {
+        if found.is_like(wanted) {
             return Ok(());
         }
-        let at = self.tokens.get(token).map_or(self.end, |(at, _)| *at);
         let why = format!("here must be {}, and this is {}", wanted.words(), found.words());
-        Err(ConditionError { at, why })
+        Err(self.error_at(token, why))
+    }
+
+    fn error_at(&self, token: usize, why: String) -> ConditionError {
+        ConditionError { at: self.tokens.get(token).map_or(self.end, |(at, _)| *at), why }
+    }
+
+    /// What two parts measure that are added, subtracted or compared: the same.
+    fn same(
+        &self,
+        token: usize,
+        (left, right): (Kind, Kind),
+        done: &str,
+    ) -> Result<Kind, ConditionError> {
+        let (Kind::Number(Measure::Of(one)), Kind::Number(Measure::Of(other))) = (left, right)
+        else {
+            let is_known = matches!(left, Kind::Number(Measure::Of(_)));
+            return Ok(if is_known { left } else { right });
+        };
+        if one == other {
+            return Ok(left);
+        }
+        let plain = [one, other]
+            .into_iter()
+            .find(|unit| *unit != Unit::NONE && [one, other].contains(&Unit::NONE));
+        let units = plain.map(|unit| UNITS.iter().filter(move |it| it.2 == unit).map(|it| it.0));
+        let units: Vec<&str> = units.into_iter().flatten().collect();
+        let hint = match units[..] {
+            [] => String::new(),
+            _ => format!("; write its unit: {}", units.join(", ")),
+        };
+        let why = format!("{} and {} cannot be {done}{hint}", one.words(), other.words());
+        Err(self.error_at(token, why))
     }
 
     /// One level deeper, as long as that is not too deep.
@@ -234,12 +302,18 @@ impl<'t> Parser<'t, '_> {
         };
         let orders = !matches!(operator, Operator::Equal | Operator::Unequal);
         if orders {
-            self.require(kind, Kind::Number)?;
+            self.require(kind, PLAIN)?;
         }
         self.next += 1;
         let at = self.next;
         let (right, other) = self.sum()?;
         self.require_at(at, other, kind)?;
+        // A force and a time have one unit each, in which a bare number beside them is meant.
+        let has_one = |kind: Kind| [Some(Unit::FORCE), Some(Unit::TIME)].contains(&kind.unit());
+        let is_meant = (has_one(kind) && other == PLAIN) || (has_one(other) && kind == PLAIN);
+        if !is_meant {
+            self.same(at, (kind, other), "compared")?;
+        }
         Ok((Node::Two(operator, Box::new(left), Box::new(right)), Kind::Bool))
     }
 
@@ -255,12 +329,19 @@ impl<'t> Parser<'t, '_> {
         let mut left = part(self)?;
         while let Some(Token::Sign(sign)) = self.peek() {
             let Some((_, operator)) = signs.iter().find(|(known, _)| *known == sign) else { break };
-            self.require(left.1, Kind::Number)?;
+            self.require(left.1, PLAIN)?;
             self.next += 1;
             let at = self.next;
             let right = part(self)?;
-            self.require_at(at, right.1, Kind::Number)?;
-            left = (Node::Two(*operator, Box::new(left.0), Box::new(right.0)), Kind::Number);
+            self.require_at(at, right.1, PLAIN)?;
+            let kinds = (left.1, right.1);
+            let kind = match operator {
+                Operator::Plus => self.same(at, kinds, "added")?,
+                Operator::Minus => self.same(at, kinds, "subtracted")?,
+                Operator::Times => measured(kinds, Unit::times),
+                _ => measured(kinds, Unit::over),
+            };
+            left = (Node::Two(*operator, Box::new(left.0), Box::new(right.0)), kind);
         }
         Ok(left)
     }
@@ -271,8 +352,8 @@ impl<'t> Parser<'t, '_> {
         }
         let at = self.next;
         let (inner, kind) = self.deeper(Self::negated)?;
-        self.require_at(at, kind, Kind::Number)?;
-        Ok((Node::Minus(Box::new(inner)), Kind::Number))
+        self.require_at(at, kind, PLAIN)?;
+        Ok((Node::Minus(Box::new(inner)), kind))
     }
 
     fn atom(&mut self) -> Parsed {
@@ -302,13 +383,14 @@ impl<'t> Parser<'t, '_> {
         let wrong = self.error(format!("`{text}` is no number that can be had"));
         self.next += 1;
         let unit = match self.peek() {
-            Some(Token::Word(word)) => UNITS.iter().find(|(unit, _)| *unit == word),
+            Some(Token::Word(word)) => UNITS.iter().find(|(unit, ..)| *unit == word),
             _ => None,
         };
-        if let Some((_, factor)) = unit {
+        if let Some((_, factor, unit)) = unit {
             self.next += 1;
             let number: f64 = text.parse().map_err(|_| wrong)?;
-            return Ok((Node::Value(Value::Real(number * factor)), Kind::Number));
+            let kind = Kind::Number(Measure::Of(*unit));
+            return Ok((Node::Value(Value::Real(number * factor)), kind));
         }
         let is_real = text.contains(['.', 'e', 'E']);
         let value = if is_real {
@@ -316,11 +398,12 @@ impl<'t> Parser<'t, '_> {
         } else {
             text.parse().map(Value::Int).ok()
         };
-        Ok((Node::Value(value.ok_or(wrong)?), Kind::Number))
+        Ok((Node::Value(value.ok_or(wrong)?), PLAIN))
     }
 
     fn word(&mut self, word: &str, at: usize) -> Parsed {
         let subject = |subject, kind| Ok((Node::Subject(subject), kind));
+        let measured = |unit| Kind::Number(Measure::Of(unit));
         if let Some((found, of_type)) = variable(self.module, self.function, word) {
             return subject(found, Kind::of(of_type));
         }
@@ -329,9 +412,9 @@ impl<'t> Parser<'t, '_> {
             "false" | "low" => Ok((Node::Value(Value::Bool(false)), Kind::Bool)),
             "output" => subject(Subject::Output(self.line(true)?), Kind::Bool),
             "input" => subject(Subject::Input(self.line(false)?), Kind::Bool),
-            "joint" => subject(Subject::Joint(self.joint()?), Kind::Number),
+            "joint" => subject(Subject::Joint(self.joint()?), measured(Unit::ANGLE)),
             "joints" => subject(Subject::Joints, Kind::Joints),
-            "force" => subject(Subject::Force, Kind::Number),
+            "force" => subject(Subject::Force, measured(Unit::FORCE)),
             "held" => subject(Subject::Held, Kind::Name),
             "holding" => {
                 let nothing = Node::Value(Value::Name("nothing".to_owned()));
@@ -340,8 +423,8 @@ impl<'t> Parser<'t, '_> {
                 Ok((node, Kind::Bool))
             }
             "error" => subject(Subject::Error(self.declared_error()?), Kind::Bool),
-            "time" => subject(Subject::Time, Kind::Number),
-            "steps" => subject(Subject::Steps, Kind::Number),
+            "time" => subject(Subject::Time, measured(Unit::TIME)),
+            "steps" => subject(Subject::Steps, PLAIN),
             "speed" => subject(Subject::Setting(Setting::Speed), Kind::Name),
             "tool" => subject(Subject::Setting(Setting::Tool), Kind::Name),
             name => self.name(name, at),

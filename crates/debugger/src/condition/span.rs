@@ -92,7 +92,7 @@ impl Span {
     fn integers(&self) -> Option<(i64, i64)> {
         match *self {
             Self::Is(Value::Int(value)) => Some((value, value)),
-            Self::Is(Value::Real(value)) if value.abs() < EXACT => {
+            Self::Is(Value::Real(value) | Value::Quantity(value, _)) if value.abs() < EXACT => {
                 Some((value.floor() as i64, value.ceil() as i64))
             }
             Self::Within(low, high) => Some((low, high)),

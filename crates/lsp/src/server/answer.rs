@@ -32,10 +32,9 @@ pub(super) fn initialized() -> InitializeResult {
     };
     // Not a blank: a list that opens by itself would take the end of the line for a choice.
     let trigger = [".", ":"].map(str::to_owned).to_vec();
-    // A command is told of where one asks, and then further as it is written.
+    // A blank is what the parts of a command begin with; where there is none, nothing opens.
     let signatures = SignatureHelpOptions {
-        trigger_characters: Some(["(", ",", ":"].map(str::to_owned).to_vec()),
-        retrigger_characters: Some(vec![" ".to_owned()]),
+        trigger_characters: Some(["(", ",", ":", " "].map(str::to_owned).to_vec()),
         ..SignatureHelpOptions::default()
     };
     let tokens =

@@ -56,6 +56,75 @@ fn a_statement_tells_how_far_back_it_goes() {
 }
 
 #[test]
+fn what_cannot_be_taken_back_within_a_statement_is_not_promised() {
+    let source = "\
+sequence draw {
+  irreversible \"the glue is on\" { set 3 high }
+  move 3 mm up
+}
+sequence main {
+  call draw
+}
+";
+    let text = hover(&source.replacen("  call", "  «call»", 1));
+    assert!(text.contains("Class *never*"), "{text}");
+    let taken = "In reverse: what it did is taken back, the last first; but going back stops \
+                 within it, at line 2: the glue is on";
+    assert!(text.contains(taken), "{text}");
+    let text = hover(&source.replacen("irreversible", "«irreversible»", 1));
+    assert!(text.contains("In reverse: going back ends here"), "{text}");
+}
+
+#[test]
+fn every_word_of_an_advanced_move_tells_what_it_is() {
+    let source = "\
+error jams { severity recoverable }
+advanced move press {
+  requires not holding else throw jams
+  distance 60 mm forward in tcp
+  speed very slow
+  stop if force > 15 N
+  succeeds if distance > 200 mm and force < 3 N
+  on failure { repeat with perturbation 1 mm 3 times return to initial position throw jams }
+  on success { return to initial position }
+  opposite force in reverse
+} reverse back
+advanced move back { turn 90 deg advancing 2 mm forward in base }
+sequence main { advance press }
+";
+    for (marked, says) in [
+        ("«advanced» move press", "A motion that feels"),
+        ("«requires» not", "must hold before the motion"),
+        ("requires not «holding»", "Whether an item is held"),
+        ("«distance» 60", "a length above zero, in um, mm, cm or m"),
+        ("60 mm «forward»", "the way in which it looks"),
+        ("forward in «tcp»", "the tool centre point"),
+        ("«speed» very slow", "in mm/s"),
+        ("speed very «slow»", "in mm/s"),
+        ("«stop» if", "The motion stops at the instant"),
+        ("stop if «force»", "a force, in N"),
+        ("«succeeds» if", "What success is"),
+        ("succeeds if «distance»", "has come along its way: a length"),
+        ("200 mm and «force»", "The largest force that was felt on the way, in N"),
+        ("on «failure»", "has not succeeded"),
+        ("repeat with «perturbation»", "1 mm where none is given"),
+        ("3 times «return»", "Straight back to where the move began"),
+        ("position «throw»", "Raises an error"),
+        ("on «success»", "where it has succeeded"),
+        ("«opposite» force", "as much force as the way there, in N"),
+        ("} «reverse»", "takes its place going back"),
+        ("«turn» 90", "an angle, in deg or rad"),
+        ("«advancing»", "while it is turned: a length"),
+        ("forward in «base»", "the base of the arm"),
+    ] {
+        let plain = marked.replace(['«', '»'], "");
+        assert!(source.contains(&plain), "{marked}");
+        let text = hover(&source.replacen(&plain, marked, 1));
+        assert!(text.contains(says), "{marked}: {text}");
+    }
+}
+
+#[test]
 fn units_types_and_codes_are_told() {
     assert!(hover("sequence main { wait 3 «ms» }").contains("The unit of a time"));
     assert!(hover("sequence main(x: «force») { }").contains("have a unit: N"));

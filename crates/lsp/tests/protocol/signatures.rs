@@ -148,11 +148,11 @@ fn a_declaration_with_a_mistake_elsewhere_is_told_of_yet() {
 }
 
 #[test]
-fn it_is_promised_and_asked_for_by_brackets() {
+fn it_is_promised_and_asked_for_by_brackets_and_blanks() {
     let mut editor = Editor::uninitialized(crate::support::Texts::default());
     let told = editor.ask("initialize", json!({ "capabilities": {} })).expect("an answer");
     let provider = &told["capabilities"]["signatureHelpProvider"];
-    assert_eq!(provider["triggerCharacters"], json!(["(", ",", ":"]));
+    assert_eq!(provider["triggerCharacters"], json!(["(", ",", ":", " "]));
     let (text, places) = marked("sequence main { wait «»");
     editor.tell("initialized", json!({}));
     editor.open("main.obv", &text);
