@@ -138,8 +138,6 @@ pub struct Attach {
     pub parameters: Vec<PathBuf>,
     /// The workcell file in which to try what would have been, in place of the tape's.
     pub cell: Option<PathBuf>,
-    /// The program that the run began after, in place of where the tape says that it is.
-    pub after: Option<PathBuf>,
     /// How errors are recovered from in what is tried.
     pub strategy: Option<String>,
     /// About how many instructions a request runs at the most.
