@@ -49,21 +49,23 @@ fn a_tape_is_opened_at_its_end_and_goes_back() {
     assert_eq!(client.bye("attach_back"), Some(0));
 }
 
+/// What is promised of a tape that lies elsewhere is so: whether its workcell is to be had there.
 #[test]
 fn what_cannot_be_tried_is_not_promised() {
     let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("dap_tapes");
     let tape = tape("moved", "glue.obv");
     let bytes = std::fs::read(&tape).expect("the tape");
-    // Elsewhere the workcell file is not to be had.
     let mut client = Client::in_folder(&folder);
     std::fs::write(folder.join("elsewhere.tape"), bytes).expect("a file");
     client.ok("initialize", json!({ "adapterID": "obverse" }));
     client.ok("attach", json!({ "tape": "elsewhere.tape" }));
     let capabilities = client.event("capabilities");
-    assert_eq!(capabilities["capabilities"]["supportsSetVariable"], false);
+    let is_promised = capabilities["capabilities"]["supportsSetVariable"].as_bool();
     client.ok("configurationDone", Value::Null);
     client.event("stopped");
     client.go("reverseContinue", json!({}));
+    let what_if = client.send("evaluate", json!({ "expression": "what-if", "context": "repl" }));
+    assert_eq!(client.response(what_if)["success"].as_bool(), is_promised);
     assert_eq!(client.bye("attach_moved"), Some(0));
 }
 

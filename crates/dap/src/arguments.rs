@@ -110,11 +110,6 @@ pub const ATTACH: &[Argument] = &[
     argument("program", Kind::Text, "the program that it must be of; a tape has its own"),
     argument("parameters", Kind::Texts, "files of values for parameters of that program"),
     argument("cell", Kind::Text, "the workcell file to try otherwise in, in place of the tape's"),
-    argument(
-        "after",
-        Kind::Text,
-        "the program that the run began after, in place of where the tape says it is",
-    ),
     argument("strategy", Kind::Text, "how errors are recovered from in what is tried (declared)"),
     argument(
         "limit",
