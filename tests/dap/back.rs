@@ -95,10 +95,22 @@ fn a_step_back_from_an_error_goes_to_before_what_raised_it() {
     client.go("stepBack", json!({}));
     assert_eq!((client.line(), frames(&mut client)[0].as_str()), (insert, "main"));
     assert_eq!(client.typed("error pin_jams"), "false");
-    while client.line() == insert {
-        client.go("stepBack", json!({}));
-    }
-    assert_eq!(client.line(), insert - 1);
+    client.go("stepBack", json!({}));
+    assert_eq!(client.line(), insert - 1, "what counts the attempts is no statement");
+    client.go("next", json!({}));
+    assert_eq!(client.line(), insert);
+    assert_eq!(client.go("next", json!({}))["reason"], "exception");
+    // Nor does a breakpoint stop twice for one statement.
+    let source = json!({ "path": program });
+    let lines = json!({ "source": source, "breakpoints": [{ "line": insert }] });
+    client.ok("setBreakpoints", lines);
+    assert_eq!(client.go("reverseContinue", json!({}))["reason"], "breakpoint");
+    assert_eq!(client.go("reverseContinue", json!({}))["reason"], "entry");
+    assert_eq!(client.go("continue", json!({}))["reason"], "breakpoint");
+    assert_eq!(client.go("continue", json!({}))["reason"], "exception");
+    let targets = json!({ "source": source, "line": insert - 1 });
+    let found = client.ok("gotoTargets", targets);
+    assert!(found["targets"].as_array().is_some_and(|all| !all.is_empty()), "{found}");
     assert_eq!(client.bye("back_error"), Some(0));
 }
 

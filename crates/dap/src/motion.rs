@@ -1,8 +1,9 @@
 //! How a session is driven for a request: in pieces, so that it can be halted for a message and go
 //! on afterwards as if it had not been.
 
-use obverse_bytecode::{FunctionKind, Module};
+use obverse_bytecode::{FunctionKind, Module, SourceEntry};
 use obverse_debugger::{Grain, Halt, Session, Walk};
+use obverse_isa::Instr;
 use obverse_sim::Sim;
 use obverse_vm::{Direction, State, Stop, can_stop_at};
 
@@ -26,7 +27,12 @@ pub(crate) struct Going {
     /// How many calls were under way where it began, or are to be where it ends.
     depth: usize,
     aim: Aim,
+    /// The statement that it began at, if that was where one is prepared.
+    from: Option<Span>,
 }
+
+/// What a statement is told from others by: its file, and its first and last byte there.
+type Span = (u16, u32, u32);
 
 impl Going {
     pub(crate) fn new(session: &Session<'_, Sim>, direction: Direction, walk: Walk) -> Self {
@@ -36,16 +42,17 @@ impl Going {
             }
             _ => false,
         };
+        let from = prepared(session).filter(|_| direction == Direction::Forward);
         match is_statement && is_in_start(session) {
-            true => Self { direction, walk, depth: SEQUENCE_DEPTH, aim: Aim::Sequence },
-            false => Self { direction, walk, depth: depth(session), aim: Aim::Walked },
+            true => Self { direction, walk, depth: SEQUENCE_DEPTH, aim: Aim::Sequence, from },
+            false => Self { direction, walk, depth: depth(session), aim: Aim::Walked, from },
         }
     }
 
     /// Back to the beginning of a call, counted from the outermost, from 1.
     pub(crate) fn to_begin_of(frame: usize) -> Self {
         let (direction, walk) = (Direction::Reverse, Walk::Finish);
-        Self { direction, walk, depth: frame, aim: Aim::Begin }
+        Self { direction, walk, depth: frame, aim: Aim::Begin, from: None }
     }
 
     /// Whether it goes to the beginning of a call.
@@ -101,12 +108,24 @@ impl Going {
                 depth(session) <= self.depth && !is_in_start(session) && is_begin()
             }
             Walk::Finish => depth(session) < self.depth,
+            Walk::Next(Grain::Statement) | Walk::Step(Grain::Statement)
+                if self.is_between(session) =>
+            {
+                false
+            }
             Walk::Next(_) if walked == self.walk => true,
             Walk::Next(grain) => {
                 depth(session) <= self.depth && (grain == Grain::Instruction || is_begin())
             }
             Walk::Step(_) | Walk::Continue | Walk::Recover => true,
         }
+    }
+
+    /// Whether a session stands at a part of a statement that is none by itself.
+    fn is_between(self, session: &Session<'_, Sim>) -> bool {
+        let pc = session.machine().state().pc();
+        let span = session.module().source_at(pc).map(span);
+        prepared(session).is_some() || self.from.is_some() && self.from == span
     }
 
     /// The first instruction of it, which shows whether it can be begun: if not, nothing has
@@ -151,6 +170,37 @@ fn is_in_start(session: &Session<'_, Sim>) -> bool {
 
 fn depth(session: &Session<'_, Sim>) -> usize {
     session.machine().state().frames().len()
+}
+
+fn span(entry: &SourceEntry) -> Span {
+    (entry.file, entry.start, entry.end)
+}
+
+/// The statement that is prepared where a session stands, before it begins.
+fn prepared(session: &Session<'_, Sim>) -> Option<Span> {
+    prepared_at(session.module(), session.machine().state().pc())
+}
+
+/// Whether an instruction only prepares a statement, which begins behind it: attempts are counted
+/// from there, and no person wrote that.
+pub(crate) fn is_preparation(module: &Module, pc: u32) -> bool {
+    prepared_at(module, pc).is_some()
+}
+
+fn prepared_at(module: &Module, pc: u32) -> Option<Span> {
+    let after = module.source_map.partition_point(|entry| entry.first <= pc);
+    let here = module.source_map.get(after.checked_sub(1)?)?;
+    let next = module.source_map.get(after)?;
+    let locals = &module.functions.get(module.function_at(pc)?)?.locals;
+    let is_hidden = |instr: &Instr| match instr {
+        Instr::StoreLocal { local, .. } => {
+            locals.get(local.index()).is_some_and(|local| local.name.starts_with('$'))
+        }
+        Instr::Join { .. } | Instr::Land { .. } => true,
+        instr => instr.info().family.is_pure(),
+    };
+    let code = module.code.get(here.first as usize..next.first as usize)?;
+    (span(here) == span(next) && code.iter().all(is_hidden)).then(|| span(here))
 }
 
 /// Whether a machine stands where a statement of the source begins.
