@@ -82,6 +82,17 @@ fn steps_go_into_calls_and_next_goes_over_them() {
 }
 
 #[test]
+fn what_counts_the_attempts_of_a_move_is_no_statement_of_its_own() {
+    let bench = bench("attempts");
+    let there = ["break 45", "continue", "step", "reverse-step"];
+    let ran = piped_to(&bench, &["debug", "--json", "peg_in_hole.obv"], &there);
+    let answers: Vec<Value> =
+        ran.json().into_iter().filter(|line| line["type"] == "answer").collect();
+    let lines: Vec<&Value> = answers[1..].iter().map(line).collect();
+    assert_eq!(lines, [&json!(45), &json!(30), &json!(45)]);
+}
+
+#[test]
 fn a_never_is_refused_live_and_crossed_rewound() {
     let bench = bench("never");
     let all = answers(

@@ -2,8 +2,8 @@
 //! on afterwards as if it had not been.
 
 use obverse_bytecode::{FunctionKind, Module, SourceEntry};
+use obverse_debugger::place::prepared;
 use obverse_debugger::{Grain, Halt, Session, Walk};
-use obverse_isa::Instr;
 use obverse_sim::Sim;
 use obverse_vm::{Direction, State, Stop, can_stop_at};
 
@@ -42,7 +42,7 @@ impl Going {
             }
             _ => false,
         };
-        let from = prepared(session).filter(|_| direction == Direction::Forward);
+        let from = prepared_here(session).filter(|_| direction == Direction::Forward);
         match is_statement && is_in_start(session) {
             true => Self { direction, walk, depth: SEQUENCE_DEPTH, aim: Aim::Sequence, from },
             false => Self { direction, walk, depth: depth(session), aim: Aim::Walked, from },
@@ -125,7 +125,7 @@ impl Going {
     fn is_between(self, session: &Session<'_, Sim>) -> bool {
         let pc = session.machine().state().pc();
         let span = session.module().source_at(pc).map(span);
-        prepared(session).is_some() || self.from.is_some() && self.from == span
+        prepared_here(session).is_some() || self.from.is_some() && self.from == span
     }
 
     /// The first instruction of it, which shows whether it can be begun: if not, nothing has
@@ -177,30 +177,8 @@ fn span(entry: &SourceEntry) -> Span {
 }
 
 /// The statement that is prepared where a session stands, before it begins.
-fn prepared(session: &Session<'_, Sim>) -> Option<Span> {
-    prepared_at(session.module(), session.machine().state().pc())
-}
-
-/// Whether an instruction only prepares a statement, which begins behind it: attempts are counted
-/// from there, and no person wrote that.
-pub(crate) fn is_preparation(module: &Module, pc: u32) -> bool {
-    prepared_at(module, pc).is_some()
-}
-
-fn prepared_at(module: &Module, pc: u32) -> Option<Span> {
-    let after = module.source_map.partition_point(|entry| entry.first <= pc);
-    let here = module.source_map.get(after.checked_sub(1)?)?;
-    let next = module.source_map.get(after)?;
-    let locals = &module.functions.get(module.function_at(pc)?)?.locals;
-    let is_hidden = |instr: &Instr| match instr {
-        Instr::StoreLocal { local, .. } => {
-            locals.get(local.index()).is_some_and(|local| local.name.starts_with('$'))
-        }
-        Instr::Join { .. } | Instr::Land { .. } => true,
-        instr => instr.info().family.is_pure(),
-    };
-    let code = module.code.get(here.first as usize..next.first as usize)?;
-    (span(here) == span(next) && code.iter().all(is_hidden)).then(|| span(here))
+fn prepared_here(session: &Session<'_, Sim>) -> Option<Span> {
+    prepared(session.module(), session.machine().state().pc())
 }
 
 /// Whether a machine stands where a statement of the source begins.

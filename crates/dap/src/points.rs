@@ -6,7 +6,6 @@
 
 use crate::filters::{self, Filter};
 use crate::message::{Asked, Client, FilterOption};
-use crate::motion::is_preparation;
 use crate::places;
 use crate::server::Loaded;
 use obverse_bytecode::Module;
@@ -193,19 +192,12 @@ fn of_line(
     let asked = given.line.ok_or("it must say its line")?;
     let line = client.line_of(asked);
     let places = Places::of_line(module, Some(file), line).map_err(|error| error.to_string())?;
-    let places = begun(module, places);
     let found = places.line.unwrap_or(line);
     let mut answer = json!({ "line": client.line(found), "source": places::source(loaded, file) });
     if found != line {
         answer["message"] = json!(format!("there is no code at line {line}; the next is {found}"));
     }
     Ok((at(module, places, given)?, answer))
-}
-
-/// Of the places of a line those where something begins: a run stops once for a statement.
-pub(crate) fn begun(module: &Module, mut places: Places) -> Places {
-    places.pcs.retain(|pc| !is_preparation(module, *pc));
-    places
 }
 
 fn of_function(module: &Module, given: &Asked) -> Result<Made, String> {

@@ -3,7 +3,6 @@
 use crate::debuggee::{Answer, Debuggee};
 use crate::message::{Goto, GotoTargets, Request};
 use crate::places;
-use crate::points::begun;
 use obverse_debugger::{Breakpoint, Halt, Moment, Places, Walk};
 use obverse_vm::Direction;
 use serde_json::{Value, json};
@@ -59,7 +58,7 @@ impl Debuggee<'_, '_, '_> {
         let module = self.session.module();
         let places = Places::of_line(module, Some(file), line);
         let Ok(places) = places.map_err(drop).and_then(|places| match places.line {
-            Some(found) if found == line => Ok(begun(module, places)),
+            Some(found) if found == line => Ok(places),
             _ => Err(()),
         }) else {
             return Vec::new();

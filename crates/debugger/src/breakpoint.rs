@@ -4,6 +4,7 @@
 //! to the next that has some, and it is told. Knows a module and a moment, not how it came about.
 
 use crate::condition::Expression;
+use crate::place::prepared;
 use crate::subject::{Look, Value};
 use crate::writers::writers;
 use obverse_bytecode::text::nearest;
@@ -186,7 +187,8 @@ impl Places {
         // several statements on a line, the first.
         let first = firsts.iter().map(|(start, _)| *start).min().unwrap_or(0);
         let entries = firsts.into_iter().filter(|(start, _)| *start == first);
-        let pcs = entries.filter_map(|(_, pc)| stop_from(module, pc)).collect();
+        let pcs = entries.filter_map(|(_, pc)| stop_from(module, pc));
+        let pcs = pcs.filter(|pc| prepared(module, *pc).is_none()).collect();
         let name = format!("{}:{found}", module.sources[index].name);
         Ok(Self { name, pcs, line: Some(found) })
     }

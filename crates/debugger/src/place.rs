@@ -1,7 +1,8 @@
 //! Where a session stands, in words that fronts show.
 
 use crate::recording::Moment;
-use obverse_bytecode::{ActionKind, Module};
+use obverse_bytecode::{ActionKind, Module, SourceEntry};
+use obverse_isa::Instr;
 use obverse_vm::{Direction, State, can_stop_at};
 
 /// What holds of what is shown.
@@ -84,5 +85,27 @@ pub(crate) fn is_at_statement(module: &Module, state: &State) -> bool {
         return false;
     }
     let Some(entry) = module.source_at(pc) else { return false };
-    can_stop_at(module, pc) && (entry.first..pc).all(|before| !can_stop_at(module, before))
+    prepared(module, pc).is_none()
+        && can_stop_at(module, pc)
+        && (entry.first..pc).all(|before| !can_stop_at(module, before))
+}
+
+/// The statement that an instruction only prepares, as file, first byte and end: it begins behind
+/// that. Attempts are counted from there, and no person wrote it.
+#[must_use]
+pub fn prepared(module: &Module, pc: u32) -> Option<(u16, u32, u32)> {
+    let span = |entry: &SourceEntry| (entry.file, entry.start, entry.end);
+    let after = module.source_map.partition_point(|entry| entry.first <= pc);
+    let here = module.source_map.get(after.checked_sub(1)?)?;
+    let next = module.source_map.get(after)?;
+    let locals = &module.functions.get(module.function_at(pc)?)?.locals;
+    let is_hidden = |instr: &Instr| match instr {
+        Instr::StoreLocal { local, .. } => {
+            locals.get(local.index()).is_some_and(|local| local.name.starts_with('$'))
+        }
+        Instr::Join { .. } | Instr::Land { .. } => true,
+        instr => instr.info().family.is_pure(),
+    };
+    let code = module.code.get(here.first as usize..next.first as usize)?;
+    (span(here) == span(next) && code.iter().all(is_hidden)).then(|| span(here))
 }

@@ -4,6 +4,7 @@
 //! else is looked for from the newest piece back, each piece forward once; in between the
 //! instructions that can change it, the machine runs as fast as ever.
 
+use super::search::is_over;
 use super::{Declined, PIECE, SeenIn, Session, look_at};
 use crate::condition::Expression;
 use crate::recording::{Moment, Order, Recording, World};
@@ -105,7 +106,7 @@ impl<'p, C: Workcell> Session<'p, C> {
             if self.interrupt.swap(false, Ordering::Relaxed) {
                 return Err(Declined::Interrupted);
             }
-            if halted == Halted::Lost || halted == Halted::There && to >= end {
+            if is_over(&halted, shown, to, end) {
                 return Ok(looked.change);
             }
         }

@@ -38,8 +38,7 @@ impl<'p, C: Workcell> Session<'p, C> {
                 if self.interrupt.swap(false, Ordering::Relaxed) {
                     return Err(Declined::Interrupted);
                 }
-                let is_there = halted == Halted::There && to >= end;
-                if is_there || halted == Halted::Lost {
+                if is_over(&halted, &shown, to, end) {
                     break;
                 }
             }
@@ -88,5 +87,15 @@ impl<'p, C: Workcell> Session<'p, C> {
         self.jumped();
         self.show(Some(moment));
         Ok(moment)
+    }
+}
+
+/// Whether a walk that goes on to a moment piece by piece is over, having been halted on the way to
+/// the end of a piece: it is there, or there is no more that could be shown.
+pub(super) fn is_over(halted: &Halted, shown: &Rewound<'_>, piece: Moment, end: Moment) -> bool {
+    match halted {
+        Halted::There => piece >= end || shown.moment() < piece,
+        Halted::Lost => true,
+        Halted::Here | Halted::Stopped(_) => false,
     }
 }

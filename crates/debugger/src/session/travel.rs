@@ -4,6 +4,7 @@
 //! Live in reverse every instruction is a hop. Rewound, going back is looking for the newest moment
 //! before this one at which a run forward would have stopped.
 
+use super::search::is_over;
 use super::{Declined, PIECE, Session, look_at};
 use crate::breakpoint::{Before, Breakpoint, Hit};
 use crate::place::is_at_statement;
@@ -309,7 +310,7 @@ impl<'p, C: Workcell> Session<'p, C> {
             if !hits.is_empty() {
                 break Halt::Hits(hits);
             }
-            if halted == Halted::There && to >= until {
+            if is_over(&halted, &view, to, until) {
                 let is_end = view.moment() >= self.run.recording().end;
                 break if is_end { Halt::EndOfRecording } else { Halt::Limit };
             }
