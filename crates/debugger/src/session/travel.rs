@@ -15,10 +15,6 @@ use obverse_vm::{Direction, Refusal, State, Stop, Stops, can_stop_at};
 use obverse_workcell::Workcell;
 use std::sync::atomic::Ordering;
 
-/// How many instructions a recording is shown by at once, at the most: as often it can be
-/// interrupted.
-const BURST: u64 = 1 << 20;
-
 /// How long a step is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Grain {
@@ -301,8 +297,7 @@ impl<'p, C: Workcell> Session<'p, C> {
                 Before::of(&self.breakpoints, look)
             });
             let direction = view.direction(self.run.recording());
-            let near = view.moment().after(BURST).min(until);
-            let halted = view.walk_on(self.run.recording(), near, stops.as_ref());
+            let halted = view.walk_on(self.run.recording(), until, stops.as_ref());
             if halted == Halted::Lost {
                 break Halt::Lost;
             }
@@ -313,7 +308,7 @@ impl<'p, C: Workcell> Session<'p, C> {
             if !hits.is_empty() {
                 break Halt::Hits(hits);
             }
-            if halted == Halted::There && near == until {
+            if halted == Halted::There {
                 let is_end = view.moment() >= self.run.recording().end;
                 break if is_end { Halt::EndOfRecording } else { Halt::Limit };
             }
