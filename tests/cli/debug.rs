@@ -329,17 +329,26 @@ fn the_tape_of_a_run_that_is_killed_is_opened_where_it_was() {
 #[cfg(unix)]
 #[test]
 fn an_interrupt_halts_the_command_and_keeps_the_session() {
-    use std::io::{BufRead, BufReader};
     let bench = bench("interrupt");
     let program = "var count = 0\nsequence main {\n  repeat 1000000000 times { count += 1 }\n  \
                    if count > 3 { wait 1 s }\n}\n";
     bench.write("i.obv", program);
+    for command in ["continue", "step 1000000", "until"] {
+        interrupted(&bench, command);
+    }
+}
+
+/// A command that takes longer than anybody waits is interrupted, and the next one is carried out.
+#[cfg(unix)]
+fn interrupted(bench: &Bench, asked: &str) {
+    use std::io::{BufRead, BufReader};
     let mut command = bench.command(&["debug", "i.obv", "--limit", "100000000000"]);
     let mut child = command.stdin(Stdio::piped()).stdout(Stdio::piped()).spawn().expect("it runs");
     let mut stdin = child.stdin.take().expect("a pipe");
-    stdin.write_all(b"continue\nprint count > 1000\n").expect("it reads");
+    let commands = format!("step\nstep\n{asked}\nprint count > 10\n");
+    stdin.write_all(commands.as_bytes()).expect("it reads");
     let mut lines = BufReader::new(child.stdout.take().expect("a pipe")).lines();
-    let is_begun = lines.by_ref().any(|line| line.is_ok_and(|line| line.ends_with("continue")));
+    let is_begun = lines.by_ref().any(|line| line.is_ok_and(|line| line.ends_with(asked)));
     assert!(is_begun, "it begins");
     std::thread::sleep(std::time::Duration::from_millis(200));
     let id = child.id().to_string();
@@ -347,7 +356,7 @@ fn an_interrupt_halts_the_command_and_keeps_the_session() {
     assert!(sent.expect("kill is there").success());
     drop(stdin);
     let rest: Vec<String> = lines.map_while(Result::ok).collect();
-    assert_eq!(rest.first().map(String::as_str), Some("interrupted"), "{rest:?}");
-    assert!(rest.iter().any(|line| line.ends_with("= true")), "{rest:?}");
+    assert_eq!(rest.first().map(String::as_str), Some("interrupted"), "{asked}: {rest:?}");
+    assert!(rest.iter().any(|line| line.ends_with("= true")), "{asked}: {rest:?}");
     assert_eq!(child.wait().expect("its end").code(), Some(0));
 }

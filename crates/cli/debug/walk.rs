@@ -9,6 +9,7 @@ use obverse_recovery::drive::ending;
 use obverse_vm::{Direction, Stop};
 use serde_json::{Value, json};
 use std::collections::BTreeMap;
+use std::sync::atomic::Ordering;
 
 /// More steps than these are no count.
 const MAX_COUNT: u32 = 1_000_000;
@@ -37,6 +38,10 @@ pub(super) fn go(front: &mut Front<'_>, rest: &str, direction: Direction, walk: 
             _ => halt == Halt::Done,
         };
         if !goes_on || made + 1 == count {
+            break;
+        }
+        if front.is_interrupted() {
+            halt = Halt::Interrupted;
             break;
         }
     }
@@ -167,7 +172,15 @@ impl Front<'_> {
             if !is_start || halt != Halt::Done || !self.is_in_start() {
                 return halt;
             }
+            if self.is_interrupted() {
+                return Halt::Interrupted;
+            }
         }
+    }
+
+    /// Whether somebody interrupted what is done, between two walks of it.
+    fn is_interrupted(&self) -> bool {
+        self.session.interrupter().swap(false, Ordering::Relaxed)
     }
 
     fn is_in_start(&self) -> bool {

@@ -92,6 +92,20 @@ fn a_rename_changes_every_place() {
     assert!(refused(&mut editor, "move").contains("cannot be a name"));
     assert!(refused(&mut editor, "gap").contains("a variable of the name `gap`"));
     assert!(refused(&mut editor, "main").contains("`main` is where a program begins"));
+    // Errors and I/O operations are spoken with another article.
+    for (declared, told) in [
+        ("error odd { severity warning }", "there is an error of the name `odd` already"),
+        ("io odd { set 1 high }", "there is an I/O operation of the name `odd` already"),
+    ] {
+        let (mut editor, places) = opened(&format!("{declared} io «on» {{ set 0 high }}"));
+        let params = json!({
+            "textDocument": { "uri": uri("main.obv") },
+            "position": places[0]["start"],
+            "newName": "odd",
+        });
+        let why = editor.ask("textDocument/rename", params).expect_err("refused").1;
+        assert_eq!(why, told);
+    }
 }
 
 #[test]
