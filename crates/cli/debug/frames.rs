@@ -30,7 +30,8 @@ impl Front<'_> {
         let found = self.checked(Expression::parse(self.module, function, text))?;
         let calls = self.calls();
         let is_hidden = calls.iter().take(self.selected).any(|it| it.function as usize == function);
-        let is_local = |subject: &&Subject| matches!(subject, Subject::Local(..));
+        let is_local =
+            |subject: &&Subject| matches!(subject, Subject::Local(..) | Subject::Counter(..));
         match found.subjects().into_iter().find(is_local).filter(|_| is_hidden) {
             Some(subject) => Err(format!(
                 "`{}` would be that of a call further in of the same sequence; `info locals` shows \

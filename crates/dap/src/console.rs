@@ -225,7 +225,9 @@ impl Debuggee<'_, '_, '_> {
         let module = self.session.module();
         let text = asked.expression.trim();
         let function = self.function_of(asked.frame_id);
-        let error = match Expression::parse(module, function, text) {
+        let facts = &self.session.recording().facts;
+        let parsed = Expression::parse(module, function, text);
+        let error = match parsed.and_then(|it| it.check_lines(facts).map(|()| it)) {
             Ok(expression) => {
                 let value = self.session.look(|look| expression.value(look));
                 return Ok(Done::Is(value));
@@ -251,7 +253,9 @@ impl Debuggee<'_, '_, '_> {
         typed: &Typed<'_>,
         text: &str,
     ) -> std::result::Result<Expression, String> {
+        let facts = &self.session.recording().facts;
         let parsed = Expression::parse(self.session.module(), typed.function, text);
-        parsed.map_err(|why| why.to_string())
+        let checked = parsed.and_then(|it| it.check_lines(facts).map(|()| it));
+        checked.map_err(|why| why.to_string())
     }
 }
