@@ -3,6 +3,7 @@
 use crate::debug::piped_to;
 use crate::support::{Bench, Ran};
 use serde_json::{Value, json};
+use std::path::Path;
 
 const PROGRAM: &str = "reversal_policy.obv";
 
@@ -174,6 +175,42 @@ fn releases_that_are_given_beforehand_are_those_of_run() {
 }
 
 /// What is tried recovers by itself, from the past too, and the run knows nothing of it.
+/// A case of the programs in a bench.
+fn case(name: &str) -> Bench {
+    let bench = Bench::new(&format!("debug_case_{name}"));
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("programs/cases").join(name);
+    for kind in ["obv", "toml"] {
+        let file = format!("{name}.{kind}");
+        bench.write(&file, std::fs::read(folder.join(&file)).expect("the case"));
+    }
+    bench
+}
+
+#[test]
+fn what_the_run_learned_later_is_not_known_to_a_what_if_from_before() {
+    let bench = case("cover");
+    let there = ["c"; 7];
+    let commands = [&there[..], &["goto 1", "what-if"], &there[..]].concat();
+    let all = answers(&session(&bench, &["cover.obv", "--seed", "2"], &commands));
+    let end = |at: usize| (&all[at]["halt"], &all[at]["position"]["moment"]);
+    assert_eq!(end(6).0, "finished", "{all:?}");
+    assert_eq!(end(15), end(6), "nothing was changed");
+}
+
+#[test]
+fn a_workcell_that_is_changed_by_hand_is_another_moment() {
+    let bench = case("plug");
+    let commands =
+        ["step", "step", "what-if", "print force", "seed 5", "print force", "last force"];
+    let told = ["print force", "goto end", "print force"];
+    let commands = [&commands[..], &told].concat();
+    let all = answers(&session(&bench, &["plug.obv", "--seed", "4"], &commands));
+    let value = |at: usize| &all[at]["value"];
+    assert_ne!(value(3), value(5), "another seed, another reading: {all:?}");
+    assert_eq!(all[6]["done"], true, "the change is found: {all:?}");
+    assert_eq!((value(7), value(9)), (value(3), value(5)), "before it, and behind it");
+}
+
 #[test]
 fn a_what_if_recovers_and_teaches_nothing() {
     let bench = Bench::new("debug_try");

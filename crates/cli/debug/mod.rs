@@ -166,6 +166,7 @@ impl<'p> Front<'p> {
         let is_end = |c: char| c.is_whitespace() || c == '/';
         let (word, rest) = line.split_at(line.find(is_end).unwrap_or(line.len()));
         let command = table::find(word)?;
+        self.session.begin_command();
         (command.run)(self, rest.trim())
     }
 

@@ -64,6 +64,8 @@ pub(crate) struct Debuggee<'a, 's, 'p> {
     pub(crate) targets: Vec<Moment>,
     pub(crate) is_started: bool,
     pub(crate) is_over: bool,
+    /// How it ended while something was looked for.
+    pub(crate) ended: Option<Ended>,
 }
 
 impl<'a, 's, 'p> Debuggee<'a, 's, 'p> {
@@ -89,6 +91,7 @@ impl<'a, 's, 'p> Debuggee<'a, 's, 'p> {
             targets: Vec::new(),
             is_started: false,
             is_over: false,
+            ended: None,
         })
     }
 
@@ -119,7 +122,12 @@ impl<'a, 's, 'p> Debuggee<'a, 's, 'p> {
                 Ok(request) => request,
                 Err(ended) => return ended,
             };
-            match self.handle(&request) {
+            self.session.begin_command();
+            let next = self.handle(&request);
+            if let Some(ended) = self.ended.take() {
+                return ended;
+            }
+            match next {
                 Next::Stay => {}
                 Next::End(ended) => return ended,
                 Next::Go(going) => {

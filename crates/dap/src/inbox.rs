@@ -42,6 +42,11 @@ impl Inbox {
         *self.bell.lock().unwrap_or_else(PoisonError::into_inner) = Some(interrupter);
     }
 
+    /// Ask no run to halt for a while.
+    pub(crate) fn hush(&self) {
+        *self.bell.lock().unwrap_or_else(PoisonError::into_inner) = None;
+    }
+
     /// The next message, whenever it comes.
     pub(crate) fn next(&self) -> Frame {
         self.receiver.recv().unwrap_or(Frame::End(None))

@@ -4,7 +4,7 @@ use crate::console::{Done, Result, Typed};
 use crate::debuggee::Debuggee;
 use crate::words;
 use obverse_bytecode::text::nearest;
-use obverse_debugger::{Change, Moment};
+use obverse_debugger::{Change, Declined, Moment};
 use obverse_isa::CheckpointId;
 
 impl Debuggee<'_, '_, '_> {
@@ -35,9 +35,15 @@ impl Debuggee<'_, '_, '_> {
             return Err(format!("`{name}` is no moment, bookmark or checkpoint{hint}"));
         };
         let gone = self.session.go_to_checkpoint(CheckpointId(index as u16));
-        gone.map_err(|_| format!("checkpoint {name} was not passed before this moment"))?;
+        let none = || format!("checkpoint {name} was not passed before this moment");
+        gone.map_err(|why| unless_there(why, none))?;
         Ok(self.moved())
     }
+}
+
+/// Why there was no jump, with words of its own where there was nothing to jump to.
+fn unless_there(why: Declined, none: impl FnOnce() -> String) -> String {
+    if why == Declined::NotBefore { none() } else { why.to_string() }
 }
 
 pub(crate) fn goto(it: &mut Debuggee<'_, '_, '_>, typed: &Typed<'_>) -> Result {
@@ -67,8 +73,15 @@ pub(crate) fn last(it: &mut Debuggee<'_, '_, '_>, typed: &Typed<'_>) -> Result {
         return it.jump_to_last_error();
     }
     let expression = it.expression(typed, rest)?;
-    let change = it.session.go_to_last_change(&expression);
-    let changed = change.map_err(|_| format!("{rest} did not change before this moment"))?;
+    let change = loop {
+        match it.session.go_to_last_change(&expression) {
+            // For whatever the client said meanwhile; and looked for again.
+            Err(Declined::Interrupted) if it.goes_on_meanwhile() => {}
+            change => break change,
+        }
+    };
+    let none = || format!("{rest} did not change before this moment");
+    let changed = change.map_err(|why| unless_there(why, none))?;
     let Change { before, after, .. } = changed;
     let here = it.here();
     Ok(Done::Moved(format!("{here}: {rest} was {before} until here, and became {after}")))

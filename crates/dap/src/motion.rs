@@ -133,7 +133,14 @@ impl Going {
     pub(crate) fn begin(self, session: &mut Session<'_, Sim>) -> Begun {
         let before = session.moment();
         session.limit(1);
-        let halt = self.go(session);
+        let mut halt = self.go(session);
+        // Whoever says something meanwhile is heard when it has begun.
+        for _ in 0..PATIENCE {
+            if halt != Halt::Interrupted || session.moment() != before {
+                break;
+            }
+            halt = self.go(session);
+        }
         session.limit(u64::MAX);
         let is_still = session.moment() == before;
         match halt {
@@ -156,6 +163,9 @@ pub(crate) enum Begun {
     /// It cannot go that way, and has not moved.
     Refused(Halt),
 }
+
+/// How often a beginning that was interrupted is begun again.
+const PATIENCE: usize = 10;
 
 /// How many calls are under way in the first sequence.
 pub(crate) const SEQUENCE_DEPTH: usize = 2;

@@ -77,7 +77,10 @@ impl Debuggee<'_, '_, '_> {
         let mut found = Vec::new();
         // It is there: it is the end.
         let _ = self.session.go_to(end);
+        // A few moments are looked for at once: whoever says something waits for them.
+        self.server.inbox.hush();
         while found.len() < MAX_TARGETS {
+            self.session.begin_command();
             match self.session.go(Direction::Reverse, Walk::Continue) {
                 Halt::Hits(_) => {
                     let (moment, pc) = (self.session.moment(), self.session.position().pc);
@@ -86,6 +89,7 @@ impl Debuggee<'_, '_, '_> {
                 _ => break,
             }
         }
+        self.server.inbox.ring(self.session.interrupter());
         // These were there before.
         let _ = self.session.undo_jump();
         let _ = self.session.drop_breakpoint(id);

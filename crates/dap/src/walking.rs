@@ -181,6 +181,17 @@ impl Debuggee<'_, '_, '_> {
         is_nothing || self.points.passes(halt)
     }
 
+    /// Serve the client while something is looked for. Whether that goes on.
+    pub(crate) fn goes_on_meanwhile(&mut self) -> bool {
+        match self.meanwhile() {
+            Ok(goes_on) => goes_on,
+            Err(ended) => {
+                self.ended = Some(ended);
+                false
+            }
+        }
+    }
+
     /// The message that a run was halted for. Whether the run goes on.
     fn meanwhile(&mut self) -> Result<bool, Ended> {
         let Some(frame) = self.server.inbox.take() else { return Ok(true) };

@@ -67,6 +67,7 @@ pub fn drive(
             machine.alter(alteration);
             None
         }
+        Order::Change => return Driven { ticks: 1, stop: None },
         Order::SetGlobal(global, value) => {
             machine.set_global(global, value);
             return Driven { ticks: 1, stop: None };

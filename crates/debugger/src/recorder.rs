@@ -152,6 +152,11 @@ impl<'r, C: Workcell> Recorder<'r, C> {
         Self { cell, log, senses, copies, forced, is_overheard, is_watched: false }
     }
 
+    /// The workcell was changed by hand.
+    pub(crate) fn changed(&mut self) {
+        self.note(Command::Change, None);
+    }
+
     fn read(&self, sense: Sense, value: u64) {
         if !self.is_overheard.get() {
             self.senses.borrow_mut().note(sense, value);

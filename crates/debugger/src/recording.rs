@@ -138,6 +138,8 @@ pub enum Command {
     Release,
     /// What was noticed for an error of this number is to be noticed again if it holds still.
     WatchAgain(u16),
+    /// Somebody changed the workcell by hand.
+    Change,
 }
 
 /// A motion and what came of it.
@@ -206,6 +208,8 @@ pub enum Order {
     Note(u32),
     /// From here on otherwise than the program says.
     Alter(Option<Alteration>),
+    /// The workcell was changed by hand, which is in the log.
+    Change,
     /// A variable of the program was given these bits.
     SetGlobal(GlobalId, u64),
     /// A local variable of a call, counted from the outermost, was given these bits.
@@ -232,7 +236,7 @@ impl Log {
                     *level = became;
                 }
             }
-            Command::Wait(_) | Command::Release | Command::WatchAgain(_) => {}
+            Command::Wait(_) | Command::Release | Command::WatchAgain(_) | Command::Change => {}
         }
     }
 

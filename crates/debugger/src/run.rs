@@ -410,6 +410,8 @@ impl<'p, C: Workcell> Run<'p, C> {
                 cell.watch_again(number);
                 Ok(())
             }
+            // A copy is kept of what it was then.
+            Command::Change => return None,
         };
         let is_same = done.err().as_ref() == log.fault(frame)
             && cell.held() == frame.held
@@ -425,13 +427,19 @@ impl<'p, C: Workcell> Run<'p, C> {
         }
     }
 
-    /// Change the workcell by hand, if there is one; what is commanded so is not recorded.
+    /// Change the workcell by hand, if there is one. What is seen of it then is a moment of its
+    /// own; what was done to it is not recorded.
     pub fn change_cell(&mut self, change: impl FnOnce(&mut C)) -> Option<()> {
-        let cell = self.cell.as_mut()?;
-        change(cell);
-        if let Some(copies) = &mut self.past.copies {
-            copies.note_changed(self.past.recording.log.frames.len(), cell);
+        change(self.cell.as_mut()?);
+        let mut live = self.live()?;
+        live.beside(|recorder| {
+            recorder.changed();
+        });
+        let frames = live.past.recording.log.frames.len();
+        if let Some(copies) = &mut live.past.copies {
+            copies.note_changed(frames, live.cell);
         }
+        live.drive(Order::Change, Pace::Step, &mut ());
         Some(())
     }
 }

@@ -34,7 +34,7 @@ use obverse_workcell::{ItemId, Workcell};
 use recover::Standing;
 use std::collections::BTreeMap;
 use std::sync::Arc;
-use std::sync::atomic::AtomicBool;
+use std::sync::atomic::{AtomicBool, Ordering};
 
 /// After how many instructions it is seen at the latest that somebody interrupts.
 const PIECE: u64 = 1 << 20;
@@ -61,8 +61,12 @@ pub struct Session<'p, C> {
     told: Vec<(u32, String)>,
     teller: Box<dyn Teller + Send + 'p>,
     policy: Policy,
-    /// What was learned of how far to go back.
+    /// What is known of how far to go back.
     memory: Memory,
+    /// The same, as the run learned it last.
+    noted: Memory,
+    /// What was known until the run learned more, and when that was, oldest first.
+    known_until: Vec<(Moment, Memory)>,
     interrupt: Arc<AtomicBool>,
     /// The most instructions that one command runs.
     limit: u64,
@@ -75,6 +79,7 @@ struct Left<'p, C> {
     /// The moment of it that was shown.
     shown: Option<Moment>,
     bookmarks: BTreeMap<String, Moment>,
+    memory: Memory,
 }
 
 /// Why a command was not carried out; nothing has changed.
@@ -172,6 +177,8 @@ impl<'p, C: Workcell> Session<'p, C> {
             teller: Box::new(()),
             policy: Policy::declared(0),
             memory: Memory::default(),
+            noted: Memory::default(),
+            known_until: Vec::new(),
             interrupt: Arc::default(),
             limit: u64::MAX,
         }
@@ -185,6 +192,17 @@ impl<'p, C: Workcell> Session<'p, C> {
     /// Let no command run more than about so many instructions.
     pub fn limit(&mut self, instructions: u64) {
         self.limit = instructions;
+    }
+
+    /// A command begins: what was interrupted before was another one.
+    pub fn begin_command(&self) {
+        self.interrupt.store(false, Ordering::Relaxed);
+    }
+
+    /// Whether the command under way was interrupted between two of its walks.
+    #[must_use]
+    pub fn is_interrupted(&self) -> bool {
+        self.interrupt.swap(false, Ordering::Relaxed)
     }
 
     /// Raised from anywhere, it halts the command under way, between instructions.
@@ -383,7 +401,9 @@ impl<'p, C: Workcell> Session<'p, C> {
         // What came later comes no more.
         let end = self.run.recording().end;
         self.bookmarks.retain(|_, moment| *moment <= end);
-        self.left.push(Left { run, standing, shown, bookmarks });
+        let known = self.known_at(at.moment());
+        let memory = std::mem::replace(&mut self.memory, known);
+        self.left.push(Left { run, standing, shown, bookmarks, memory });
         self.jumps.clear();
         Ok(())
     }
@@ -394,8 +414,9 @@ impl<'p, C: Workcell> Session<'p, C> {
     /// If nothing is tried.
     pub fn leave_what_if(&mut self) -> Result<(), Declined> {
         let left = self.left.pop().ok_or(Declined::NoWhatIf)?;
-        let Left { run, standing, shown, bookmarks } = left;
+        let Left { run, standing, shown, bookmarks, memory } = left;
         (self.run, self.standing, self.bookmarks) = (run, standing, bookmarks);
+        self.memory = memory;
         self.view = None;
         self.jumps.clear();
         self.show(shown);

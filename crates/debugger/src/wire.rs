@@ -22,6 +22,7 @@ pub(crate) enum Order {
     Alter(Option<Altered>),
     SetGlobal(u16, u64),
     SetLocal(u32, u8, u64),
+    Change,
 }
 
 impl From<recording::Order> for Order {
@@ -39,6 +40,7 @@ impl From<recording::Order> for Order {
                 let aside = it.aside.map(|aside| (aside.pc, aside.by_m));
                 (it.slower, it.force_factor, aside)
             })),
+            To::Change => Self::Change,
             To::SetGlobal(global, value) => Self::SetGlobal(global.0, value),
             To::SetLocal(frame, local, value) => Self::SetLocal(frame, local.0, value),
         }
@@ -62,6 +64,7 @@ impl From<Order> for recording::Order {
                     aside: aside.map(|(pc, by_m)| Aside { pc, by_m }),
                 }))
             }
+            Order::Change => Self::Change,
             Order::SetGlobal(global, value) => Self::SetGlobal(GlobalId(global), value),
             Order::SetLocal(frame, local, value) => Self::SetLocal(frame, LocalId(local), value),
         }

@@ -11,7 +11,7 @@ use obverse_debugger::drive::Pace;
 use obverse_debugger::recording::{Moment, Order};
 use obverse_debugger::rewound::Halted;
 use obverse_debugger::{
-    Breakpoint, Expression, Grain, Places, Run, Session, Subject, Value, Walk, What,
+    Breakpoint, Expression, Grain, Halt, Places, Run, Session, Subject, Value, Walk, What,
 };
 use obverse_isa::{ErrorId, GlobalId, LocalId};
 use obverse_recovery::{Step, Teller};
@@ -233,13 +233,16 @@ pub fn moves_lead_where_they_say(u: &mut Unstructured<'_>) -> Result<bool> {
     assert_eq!(session.go_to(now), Ok(()));
     for choice in choices.map(|choice| choice % 8) {
         let expected = expected(choice, now, &all, &session, end);
-        carry_out(choice, &mut session, &expression);
+        let hits = carry_out(choice, &mut session, &expression);
         let found = session.moment();
         let what = || format!("choice {choice} from {now}, {}, {deeds:?}", expression.text());
         if let Some(expected) = expected {
             assert_eq!(found, expected, "{}", what());
         }
         let was = all.iter().find(|shown| shown.moment == found);
+        if let (2 | 3, Some(hits)) = (choice, hits) {
+            assert_eq!(hits, all_hits(found, &all, &session), "{}", what());
+        }
         assert_eq!(Some(session.digest()), was.map(|was| was.digest), "{}", what());
         now = found;
     }
@@ -250,18 +253,40 @@ pub fn moves_lead_where_they_say(u: &mut Unstructured<'_>) -> Result<bool> {
     Ok(all.len() > 20)
 }
 
-fn carry_out(choice: u8, session: &mut Session<'_, Ledger>, expression: &Expression) {
+/// The breakpoints at which that ended, if it ended at some.
+fn carry_out(
+    choice: u8,
+    session: &mut Session<'_, Ledger>,
+    expression: &Expression,
+) -> Option<Vec<u32>> {
     use Direction::{Forward, Reverse};
-    match choice {
-        0 => drop(session.go(Forward, Walk::Step(Grain::Instruction))),
-        1 => drop(session.go(Reverse, Walk::Step(Grain::Instruction))),
-        2 => drop(session.go(Forward, Walk::Continue)),
-        3 => drop(session.go(Reverse, Walk::Continue)),
-        4 => drop(session.go_to_last_change(expression)),
-        5 => drop(session.go(Reverse, Walk::Next(Grain::Instruction))),
-        6 => drop(session.go(Forward, Walk::Finish)),
-        _ => drop(session.go(Reverse, Walk::Step(Grain::Statement))),
+    let halt = match choice {
+        0 => session.go(Forward, Walk::Step(Grain::Instruction)),
+        1 => session.go(Reverse, Walk::Step(Grain::Instruction)),
+        2 => session.go(Forward, Walk::Continue),
+        3 => session.go(Reverse, Walk::Continue),
+        4 => {
+            let _none_is_fine = session.go_to_last_change(expression);
+            return None;
+        }
+        5 => session.go(Reverse, Walk::Next(Grain::Instruction)),
+        6 => session.go(Forward, Walk::Finish),
+        _ => session.go(Reverse, Walk::Step(Grain::Statement)),
+    };
+    match halt {
+        Halt::Hits(hits) => Some(hits.iter().map(|hit| hit.id).collect()),
+        _ => None,
     }
+}
+
+/// Every breakpoint that a run comes to at a moment, whichever way and from wherever.
+fn all_hits(moment: Moment, all: &[Shown], session: &Session<'_, Ledger>) -> Vec<u32> {
+    let Some(at) = all.iter().position(|shown| shown.moment == moment) else { return Vec::new() };
+    let is_hit = |breakpoint: &Breakpoint| match &breakpoint.what {
+        What::Places { pcs, .. } => pcs.contains(&all[at].pc) && all[at].is_plain,
+        What::Change(_) => at > 0 && all[at - 1].value != all[at].value,
+    };
+    session.breakpoints().iter().filter(|it| is_hit(it)).map(|it| it.id).collect()
 }
 
 /// Where a command is to lead, if that is said here.

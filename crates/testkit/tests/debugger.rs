@@ -5,14 +5,15 @@ use obverse_bytecode::{Module, Verified, verify};
 use obverse_compiler::compile;
 use obverse_debugger::recording::Moment;
 use obverse_debugger::{
-    Breakpoint, Declined, Expression, Grain, Halt, Mode, Piece, PlaceError, Places, Run, Session,
-    Subject, Unit, Value, Walk, Wrong,
+    Breakpoint, Declined, Expression, Grain, Halt, Hit, Mode, Piece, PlaceError, Places, Run,
+    Session, Subject, Unit, Value, Walk, Wrong,
 };
 use obverse_isa::GlobalId;
 use obverse_testkit::Ledger;
 use obverse_vm::Direction::{Forward, Reverse};
 use obverse_vm::Stop;
 use obverse_workcell::Fault;
+use std::sync::atomic::Ordering;
 
 const PROGRAM: &str = "\
 error odd { severity warning }
@@ -60,6 +61,10 @@ fn read(session: &Session<'_, Ledger>, text: &str) -> Value {
     let function = module.function_at(session.position().pc).expect("a function");
     let expression = Expression::parse(module, function, text).expect(text);
     session.look(|look| expression.value(look))
+}
+
+fn hit(id: u32) -> Hit {
+    Hit { id, change: None, log: None }
 }
 
 fn line(session: &Session<'_, Ledger>) -> usize {
@@ -381,6 +386,42 @@ fn breakpoints_count_tell_and_pass() {
     assert_eq!(session.go(Forward, Walk::Continue), Halt::Stopped(Stop::Finished));
     assert_eq!(session.take_told(), [(told, "count is 6".to_owned())]);
     assert_eq!(session.take_told(), []);
+}
+
+#[test]
+fn what_is_come_to_is_counted_going_back_over_a_recording_too() {
+    let program = program();
+    let mut session = finished(&program);
+    let (end, at) = (session.moment(), at_line(program.module(), 6));
+    session.go_to(end).expect("there is such a moment");
+    let id = session.add_breakpoint(Breakpoint { ignored: 1, ..at.clone() });
+    let told = vec![Piece::Text("by it".to_owned())];
+    session.add_breakpoint(Breakpoint { log: Some(told), ..at.clone() });
+    assert!(matches!(session.go(Reverse, Walk::Continue), Halt::Hits(_)));
+    let there = session.moment();
+    assert_eq!(session.breakpoints()[0].hits, 2, "one was passed");
+    assert_eq!(session.take_told().len(), 2, "each is told");
+    // It is the first of the two calls.
+    session.drop_breakpoint(id).expect("it is there");
+    assert_eq!(session.go(Reverse, Walk::Continue), Halt::StartOfRecording);
+    let first = session.add_breakpoint(at);
+    assert_eq!(session.go(Forward, Walk::Continue), Halt::Hits(vec![hit(first)]));
+    assert_eq!(session.moment(), there);
+}
+
+#[test]
+fn who_interrupts_between_two_walks_of_a_command_halts_the_next() {
+    let program = program();
+    let mut session = finished(&program);
+    let step = Walk::Step(Grain::Instruction);
+    session.begin_command();
+    assert_eq!(session.go(Reverse, step), Halt::Done);
+    session.interrupter().store(true, Ordering::Relaxed);
+    let moment = session.moment();
+    assert_eq!((session.go(Reverse, step), session.moment()), (Halt::Interrupted, moment));
+    session.interrupter().store(true, Ordering::Relaxed);
+    session.begin_command();
+    assert_eq!(session.go(Reverse, step), Halt::Done, "another command was meant");
 }
 
 #[test]

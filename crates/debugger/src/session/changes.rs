@@ -15,7 +15,6 @@ use crate::writers::{commands, writers_beside_steps};
 use obverse_bytecode::Module;
 use obverse_vm::{Event, Observer, State, Stops};
 use obverse_workcell::Workcell;
-use std::sync::atomic::Ordering;
 
 /// A change of something.
 #[derive(Clone, Debug, PartialEq)]
@@ -45,7 +44,6 @@ impl<'p, C: Workcell> Session<'p, C> {
     /// # Errors
     /// If it did not change before, or somebody interrupts.
     pub fn last_change(&self, expression: &Expression) -> Result<Change, Declined> {
-        self.interrupt.store(false, Ordering::Relaxed);
         let view = self.view.clone().unwrap_or_else(|| self.run.rewound());
         let subjects = expression.subjects();
         let is_world = subjects.iter().all(|subject| subject.is_of_the_workcell());
@@ -103,7 +101,7 @@ impl<'p, C: Workcell> Session<'p, C> {
                 }
                 looked.look(shown.moment(), look);
             });
-            if self.interrupt.swap(false, Ordering::Relaxed) {
+            if self.is_interrupted() {
                 return Err(Declined::Interrupted);
             }
             if is_over(&halted, shown, to, end) {

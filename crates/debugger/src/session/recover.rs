@@ -6,6 +6,7 @@
 
 use super::{Declined, Halt, Session, Walk};
 use crate::hops::Hops;
+use crate::recording::Moment;
 use crate::retrace::retraced;
 use crate::rewound::Rewound;
 use crate::run::Run;
@@ -77,13 +78,24 @@ impl<'p, C: Workcell> Session<'p, C> {
     /// Let errors be met so, by what was learned before.
     pub fn recover_by(&mut self, policy: Policy, memory: Memory) {
         self.policy = policy;
+        self.noted = memory.clone();
         self.memory = memory;
+        self.known_until.clear();
     }
 
     /// What was learned; of what is tried, nothing is.
     #[must_use]
     pub fn memory(&self) -> &Memory {
-        &self.memory
+        self.left.first().map_or(&self.memory, |left| &left.memory)
+    }
+
+    /// What was known at a moment: what the run has learned since is not for what is tried there.
+    pub(super) fn known_at(&self, moment: Moment) -> Memory {
+        let left = self.left.iter();
+        let parted = left.map(|left| left.shown.unwrap_or(left.run.recording().end)).min();
+        let moment = parted.map_or(moment, |parted| parted.min(moment));
+        let then = self.known_until.iter().find(|(until, _)| *until > moment);
+        then.map_or(&self.memory, |(_, known)| known).clone()
     }
 
     /// The errors that were due in the run and are over, oldest first.
@@ -212,12 +224,14 @@ impl<'p, C: Workcell> Session<'p, C> {
         ) -> T,
     ) -> Option<T> {
         let Policy { strategy, bounds, person_s, seed } = self.policy;
+        let learns = self.left.is_empty();
+        let met = self.standing.incidents.len();
         let mut recovery = Recovery {
             strategy,
             bounds,
             memory: &mut self.memory,
             // What is tried is nothing that the robot has met.
-            remembers: self.left.is_empty(),
+            remembers: learns,
             person_s,
             seed,
             operator: &mut Unattended,
@@ -228,6 +242,10 @@ impl<'p, C: Workcell> Session<'p, C> {
         let at = &mut self.standing.at;
         let done = hops.map(|mut hops| work(at, &mut hops, &mut recovery, &mut *self.teller));
         self.standing.incidents = recovery.incidents;
+        if learns && self.standing.incidents.len() > met && self.memory != self.noted {
+            let known = std::mem::replace(&mut self.noted, self.memory.clone());
+            self.known_until.push((self.run.recording().end, known));
+        }
         done
     }
 }

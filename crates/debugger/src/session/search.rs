@@ -1,7 +1,5 @@
-//! Finding a moment: the newest at which something holds, the last error, a checkpoint of the
-//! program.
-//!
-//! What lies between is gone through from the newest piece back, each piece forward once.
+//! Finding a moment: pieces of the recording from the newest back, the last error, a checkpoint of
+//! the program.
 
 use super::{Declined, PIECE, Session};
 use crate::recording::{Moment, Order};
@@ -9,43 +7,33 @@ use crate::rewound::{Halted, Rewound};
 use obverse_isa::{CheckpointId, Instr};
 use obverse_vm::{Direction, Stops};
 use obverse_workcell::Workcell;
-use std::sync::atomic::Ordering;
 
 impl<'p, C: Workcell> Session<'p, C> {
-    /// Go through the recording before a moment, from the newest piece back. Each piece is shown
-    /// forward, its last moment included, at every place that may matter; after a piece in which
-    /// something was found the search is over. Whether anything was.
+    /// Go through the newest piece of the recording that lies before a moment, forward, that
+    /// moment included, and look at every place that may matter. Where the piece begins.
     ///
     /// # Errors
     /// If somebody interrupts.
-    pub(super) fn search(
+    pub(super) fn look_through(
         &self,
-        from: Rewound<'p>,
-        now: Moment,
+        shown: &mut Rewound<'p>,
+        end: Moment,
         stops: Option<&Stops>,
-        mut look: impl FnMut(&Rewound<'p>) -> bool,
-    ) -> Result<bool, Declined> {
-        let mut shown = from;
-        let mut end = now;
+        mut look: impl FnMut(&Rewound<'p>),
+    ) -> Result<Moment, Declined> {
+        shown.go_before(self.run.timeline(), end);
+        let begin = shown.moment();
+        look(shown);
         loop {
-            shown.go_before(self.run.timeline(), end);
-            let begin = shown.moment();
-            let mut is_found = look(&shown);
-            loop {
-                let to = shown.moment().after(PIECE).min(end);
-                let halted = shown.walk_on(self.run.recording(), to, stops);
-                is_found |= look(&shown);
-                if self.interrupt.swap(false, Ordering::Relaxed) {
-                    return Err(Declined::Interrupted);
-                }
-                if is_over(&halted, &shown, to, end) {
-                    break;
-                }
+            let to = shown.moment().after(PIECE).min(end);
+            let halted = shown.walk_on(self.run.recording(), to, stops);
+            look(shown);
+            if self.is_interrupted() {
+                return Err(Declined::Interrupted);
             }
-            if is_found || begin == Moment(0) {
-                return Ok(is_found);
+            if is_over(&halted, shown, to, end) {
+                return Ok(begin);
             }
-            end = begin;
         }
     }
 

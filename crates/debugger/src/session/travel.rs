@@ -14,7 +14,6 @@ use obverse_bytecode::Module;
 use obverse_recovery::{Advance, Ending};
 use obverse_vm::{Direction, Refusal, State, Stop, Stops, can_stop_at};
 use obverse_workcell::Workcell;
-use std::sync::atomic::Ordering;
 
 /// How long a step is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -120,10 +119,17 @@ impl Origin {
     }
 }
 
+/// Where a walk back may stop.
+struct Place {
+    moment: Moment,
+    hits: Vec<Hit>,
+    /// Whether it is where the walk was to go.
+    is_there: bool,
+}
+
 impl<'p, C: Workcell> Session<'p, C> {
     /// Go on, in a direction. Live this commands the workcell; rewound it shows what was.
     pub fn go(&mut self, direction: Direction, walk: Walk) -> Halt {
-        self.interrupt.store(false, Ordering::Relaxed);
         let halt = match (&self.view, direction) {
             (None, _) if self.run.cell().is_some() => self.go_live(direction, walk),
             (_, Direction::Forward) => self.go_shown(walk),
@@ -170,7 +176,7 @@ impl<'p, C: Workcell> Session<'p, C> {
             if self.run.recording().end >= until {
                 return Halt::Limit;
             }
-            if self.interrupt.swap(false, Ordering::Relaxed) {
+            if self.is_interrupted() {
                 return Halt::Interrupted;
             }
             if direction == Direction::Reverse && self.is_at_change() {
@@ -265,6 +271,11 @@ impl<'p, C: Workcell> Session<'p, C> {
             let hit = |it: &Breakpoint| it.hit(before, look, direction);
             self.breakpoints.iter().filter_map(hit).collect()
         });
+        self.counted(found)
+    }
+
+    /// Those of some hits that stop a run, all being counted, and what they tell.
+    fn counted(&mut self, found: Vec<Hit>) -> Vec<Hit> {
         let mut hits = Vec::new();
         for hit in found {
             let breakpoint = self.breakpoints.iter_mut().find(|it| it.id == hit.id);
@@ -298,13 +309,16 @@ impl<'p, C: Workcell> Session<'p, C> {
                 Before::of(&self.breakpoints, look)
             });
             let direction = view.direction(self.run.recording());
-            let to = view.moment().after(PIECE).min(until);
+            let from = view.moment();
+            let to = from.after(PIECE).min(until);
             let halted = view.walk_on(self.run.recording(), to, stops.as_ref());
             if halted == Halted::Lost {
                 break Halt::Lost;
             }
             self.view = Some(view);
-            let hits = self.hits(&before, direction);
+            // Where nothing was gone over, nothing is come to.
+            let has_moved = self.moment() > from;
+            let hits = if has_moved { self.hits(&before, direction) } else { Vec::new() };
             let Some(shown) = self.view.take() else { return Halt::Lost };
             view = shown;
             if !hits.is_empty() {
@@ -317,7 +331,7 @@ impl<'p, C: Workcell> Session<'p, C> {
             if origin.is_there(module, view.machine().state()) {
                 break Halt::Done;
             }
-            if self.interrupt.swap(false, Ordering::Relaxed) {
+            if self.is_interrupted() {
                 break Halt::Interrupted;
             }
         };
@@ -327,46 +341,71 @@ impl<'p, C: Workcell> Session<'p, C> {
 
     /// Rewound, back to the newest moment before this one at which the walk would have stopped.
     fn go_shown_back(&mut self, walk: Walk) -> Halt {
-        let module = self.module();
         let now = self.moment();
-        let Some(view) = self.view.clone() else { return Halt::StartOfRecording };
-        let origin = Origin::of(walk, view.machine().state());
+        let Some(mut shown) = self.view.clone() else { return Halt::StartOfRecording };
+        let origin = Origin::of(walk, shown.machine().state());
         let stops = match walk {
             Walk::Continue => self.stops(),
             _ => None,
         };
-        let mut found: Option<(Moment, Vec<Hit>)> = None;
-        let mut before: Option<(Moment, Before)> = None;
-        let (breakpoints, recording) = (&self.breakpoints, self.run.recording());
-        let is_found = self.search(view, now, stops.as_ref(), |shown: &Rewound<'p>| {
-            let moment = shown.moment();
-            if moment < now {
-                // At the start of a piece nothing is known of what was before it, which the piece
-                // before ends with.
-                let none = Before::default();
-                let known = before.as_ref().filter(|(then, _)| *then < moment);
-                let before = known.map_or(&none, |(_, before)| before);
-                let hits: Vec<Hit> = look_at(module, recording, shown, |look| {
-                    let hit = |it: &Breakpoint| it.hit(before, look, Direction::Reverse);
-                    breakpoints.iter().filter_map(hit).filter(|hit| hit.log.is_none()).collect()
-                });
-                let is_there = origin.is_there(module, shown.machine().state());
-                if !hits.is_empty() || is_there {
-                    found = Some((moment, hits));
+        let mut end = now;
+        loop {
+            let piece = self.places_in(&mut shown, (end, now), origin, stops.as_ref());
+            let Ok((begin, places)) = piece else { return Halt::Interrupted };
+            for place in places.into_iter().rev() {
+                let hits = self.counted(place.hits);
+                if place.is_there || !hits.is_empty() {
+                    self.show(Some(place.moment));
+                    return if hits.is_empty() { Halt::Done } else { Halt::Hits(hits) };
                 }
             }
-            let here = look_at(module, recording, shown, |look| Before::of(breakpoints, look));
-            before = Some((moment, here));
-            found.is_some()
-        });
-        let Ok(is_found) = is_found else { return Halt::Interrupted };
-        if !is_found {
-            self.show(Some(Moment(0)));
-            return Halt::StartOfRecording;
+            if begin == Moment(0) {
+                self.show(Some(Moment(0)));
+                return Halt::StartOfRecording;
+            }
+            end = begin;
         }
-        let (moment, hits) = found.unwrap_or_default();
-        self.show(Some(moment));
-        if hits.is_empty() { Halt::Done } else { Halt::Hits(hits) }
+    }
+
+    /// Where the newest piece before a moment begins, and the places in it, before now and oldest
+    /// first, at which a walk back may stop.
+    fn places_in(
+        &self,
+        shown: &mut Rewound<'p>,
+        (end, now): (Moment, Moment),
+        origin: Origin,
+        stops: Option<&Stops>,
+    ) -> Result<(Moment, Vec<Place>), Declined> {
+        let (module, breakpoints) = (self.module(), &self.breakpoints);
+        let recording = self.run.recording();
+        let mut places = Vec::new();
+        let mut before: Option<(Moment, Before)> = None;
+        self.look_through(shown, end, stops, |shown| {
+            let moment = shown.moment();
+            let state = shown.machine().state();
+            look_at(module, recording, shown, |look| {
+                // Of what was before the first place of a piece nothing is known here: the piece
+                // before ends with it.
+                let known = before.as_ref().filter(|(then, _)| *then < moment);
+                let is_first = moment == Moment(0);
+                if moment < now && (known.is_some() || is_first) {
+                    let none = Before::default();
+                    let before = known.map_or(&none, |(_, before)| before);
+                    let hit = |it: &Breakpoint| it.hit(before, look, Direction::Reverse);
+                    let hits: Vec<Hit> = breakpoints.iter().filter_map(hit).collect();
+                    let is_there = origin.is_there(module, state);
+                    if is_there {
+                        // Nothing before it is come to.
+                        places.clear();
+                    }
+                    if is_there || !hits.is_empty() {
+                        places.push(Place { moment, hits, is_there });
+                    }
+                }
+                before = Some((moment, Before::of(breakpoints, look)));
+            });
+        })
+        .map(|begin| (begin, places))
     }
 
     /// Show a moment of the run, or the run where it has come to.
