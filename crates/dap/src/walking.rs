@@ -156,7 +156,8 @@ impl Debuggee<'_, '_, '_> {
                 }
                 Halt::Limit if !interrupter.load(Ordering::Relaxed) => {}
                 Halt::Limit | Halt::Interrupted => match self.meanwhile() {
-                    Ok(true) => {}
+                    // Between two messages the run gets on.
+                    Ok(true) => self.session.begin_command(),
                     Ok(false) => {
                         self.halted(&Halt::Interrupted, going);
                         break None;
@@ -184,7 +185,10 @@ impl Debuggee<'_, '_, '_> {
     /// Serve the client while something is looked for. Whether that goes on.
     pub(crate) fn goes_on_meanwhile(&mut self) -> bool {
         match self.meanwhile() {
-            Ok(goes_on) => goes_on,
+            Ok(goes_on) => {
+                self.session.begin_command();
+                goes_on
+            }
             Err(ended) => {
                 self.ended = Some(ended);
                 false
