@@ -124,6 +124,9 @@ pub struct Variable {
     /// Its type.
     #[serde(with = "crate::wire::value_type")]
     pub of_type: Type,
+    /// What a real measures, for who looks at it: the exponents of metres, radians, seconds and
+    /// newtons. None if that is not known.
+    pub measures: Option<[i8; 4]>,
 }
 
 /// A function: a sequence, an action, an I/O operation, an advanced move, or the start.

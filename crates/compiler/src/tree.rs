@@ -106,8 +106,15 @@ impl Layout {
     /// A further local; none if there is no room.
     pub(crate) fn add(&mut self, name: &str, of_type: Type) -> Option<LocalId> {
         let local = u8::try_from(self.locals.len()).ok().filter(|_| self.slots() < MAX_SLOTS)?;
-        self.locals.push(Variable { name: name.to_owned(), of_type });
+        self.locals.push(Variable { name: name.to_owned(), of_type, measures: None });
         Some(LocalId(local))
+    }
+
+    /// The same, of a type of the language.
+    pub(crate) fn add_typed(&mut self, name: &str, of_type: ValueType) -> Option<LocalId> {
+        let added = self.add(name, of_type.machine())?;
+        self.locals[added.index()].measures = of_type.measures();
+        Some(added)
     }
 
     /// A further local whose name begins with `$`; where another has that name already, or it is

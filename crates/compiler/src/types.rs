@@ -65,6 +65,14 @@ impl ValueType {
         }
     }
 
+    /// What a real of this type measures: exponents of metres, radians, seconds and newtons.
+    pub(crate) fn measures(self) -> Option<[i8; 4]> {
+        match self {
+            Self::Real(dimension) => Some(dimension.exponents()),
+            Self::Int | Self::Bool | Self::Joints | Self::Item | Self::Unknown => None,
+        }
+    }
+
     /// Whether a mistake has been reported already.
     pub(crate) fn is_unknown(self) -> bool {
         self == Self::Unknown

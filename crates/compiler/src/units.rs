@@ -30,6 +30,11 @@ impl Dimension {
     /// In radians per second.
     const TURN: Self = Self { angle: 1, time: -1, ..Self::NONE };
 
+    /// Its exponents of metres, radians, seconds and newtons.
+    pub(crate) fn exponents(self) -> [i8; 4] {
+        [self.length, self.angle, self.time, self.force]
+    }
+
     /// Whether it is a plain number.
     pub(crate) fn is_none(self) -> bool {
         self == Self::NONE
@@ -47,8 +52,7 @@ impl Dimension {
 
     /// That of the square root, if it has one.
     pub(crate) fn root(self) -> Option<Self> {
-        let exponents = [self.length, self.angle, self.time, self.force];
-        exponents.iter().all(|exponent| exponent % 2 == 0).then_some(Self {
+        self.exponents().iter().all(|exponent| exponent % 2 == 0).then_some(Self {
             length: self.length / 2,
             angle: self.angle / 2,
             time: self.time / 2,

@@ -26,7 +26,7 @@ use crate::replay::Cursor;
 use crate::retrace::is_altered;
 use crate::rewound::Rewound;
 use crate::run::{NoFork, Run};
-use crate::subject::{Look, Seen, Subject, Value, bits};
+use crate::subject::{Look, Seen, Subject, Value, bits_for};
 use obverse_bytecode::{Module, Verified};
 use obverse_recovery::{Memory, Teller};
 use obverse_vm::{Direction, LinkError, Machine, Stops};
@@ -465,15 +465,15 @@ impl<'p, C: Workcell> Session<'p, C> {
         let module = self.module();
         match *subject {
             Subject::Global(global) => {
-                let of_type = module.globals.get(global.index())?.of_type;
-                Some(Order::SetGlobal(global, bits(module, of_type, value)?))
+                let declared = module.globals.get(global.index())?;
+                Some(Order::SetGlobal(global, bits_for(module, declared, value)?))
             }
             Subject::Local(function, local) => {
                 let declared = module.functions.get(usize::from(function))?;
-                let of_type = declared.locals.get(local.index())?.of_type;
+                let declared = declared.locals.get(local.index())?;
                 let frames = self.machine().state().frames();
                 let frame = frames.iter().rposition(|frame| frame.function == function)?;
-                let bits = bits(module, of_type, value)?;
+                let bits = bits_for(module, declared, value)?;
                 Some(Order::SetLocal(u32::try_from(frame).ok()?, local, bits))
             }
             _ => None,

@@ -4,7 +4,7 @@
 use crate::recording::World;
 use crate::unit::Unit;
 use obverse_bytecode::text::nearest;
-use obverse_bytecode::{LoopName, Mentioned, Module};
+use obverse_bytecode::{LoopName, Mentioned, Module, Variable};
 use obverse_isa::{ErrorId, GlobalId, Instr, LocalId, Setting, SpeedId, Type};
 use obverse_vm::{Frame, State};
 use obverse_workcell::ItemId;
@@ -172,6 +172,28 @@ pub fn value(module: &Module, of_type: Type, bits: u64) -> Value {
     }
 }
 
+/// The bits of a value of a variable, with what it measures.
+pub(crate) fn measured(module: &Module, declared: &Variable, bits: u64) -> Value {
+    match (value(module, declared.of_type, bits), declared.measures) {
+        (Value::Real(value), Some(exponents)) if Unit::of(exponents) != Unit::NONE => {
+            Value::Quantity(value, Unit::of(exponents))
+        }
+        (value, _) => value,
+    }
+}
+
+/// The bits of a value that can be given to a variable; none if it is of another type, or measures
+/// something else.
+pub(crate) fn bits_for(module: &Module, declared: &Variable, value: &Value) -> Option<u64> {
+    let is_one = declared.of_type == Type::Real;
+    let unit = declared.measures.filter(|_| is_one).map(Unit::of);
+    let given = match value {
+        Value::Quantity(_, unit) => *unit,
+        _ => Unit::NONE,
+    };
+    unit.is_none_or(|unit| unit == given).then(|| bits(module, declared.of_type, value))?
+}
+
 /// The bits of a value that can be given to a variable of a type; none if it is of another.
 #[must_use]
 pub fn bits(module: &Module, of_type: Type, value: &Value) -> Option<u64> {
@@ -208,7 +230,7 @@ impl Subject {
                 let declared = look.module.globals.get(global.index());
                 let bits = look.state.globals().get(global.index());
                 match (declared, bits) {
-                    (Some(declared), Some(bits)) => value(look.module, declared.of_type, *bits),
+                    (Some(declared), Some(bits)) => measured(look.module, declared, *bits),
                     _ => Value::Absent,
                 }
             }
@@ -219,7 +241,7 @@ impl Subject {
                 let declared = declared.and_then(|it| it.locals.get(local.index()));
                 match (declared, frame) {
                     (Some(declared), Some(frame)) => {
-                        value(look.module, declared.of_type, frame.local(local.0))
+                        measured(look.module, declared, frame.local(local.0))
                     }
                     _ => Value::Absent,
                 }
@@ -361,22 +383,28 @@ pub(crate) fn line(module: &Module, name: &str, is_output: bool) -> Option<u16> 
 }
 
 /// The variable of a name: of a function, or of the program.
-pub(crate) fn variable(module: &Module, function: usize, name: &str) -> Option<(Subject, Type)> {
+pub(crate) fn variable(
+    module: &Module,
+    function: usize,
+    name: &str,
+) -> Option<(Subject, Type, Option<Unit>)> {
     let declared = module.functions.get(function)?;
     // Of two with one name the later is the inner one.
     let local = declared.locals.iter().rposition(|local| local.name == name);
     if let Some(local) = local {
         let subject = Subject::Local(function as u16, LocalId(local as u8));
-        return Some((subject, declared.locals[local].of_type));
+        let Variable { of_type, measures, .. } = declared.locals[local];
+        return Some((subject, of_type, measures.map(Unit::of)));
     }
     let is_here = |around: &LoopName| {
         around.name == name && (declared.first..declared.end).contains(&around.enter)
     };
     if let Some(named) = module.loops.iter().position(is_here) {
-        return Some((Subject::Counter(function as u16, named as u16), Type::Int));
+        return Some((Subject::Counter(function as u16, named as u16), Type::Int, None));
     }
     let global = module.globals.iter().position(|global| global.name == name)?;
-    Some((Subject::Global(GlobalId(global as u16)), module.globals[global].of_type))
+    let Variable { of_type, measures, .. } = module.globals[global];
+    Some((Subject::Global(GlobalId(global as u16)), of_type, measures.map(Unit::of)))
 }
 
 /// The variable that was probably meant.

@@ -27,6 +27,11 @@ impl Unit {
     /// A plain number.
     pub(crate) const NONE: Self = Self { exponents: [0; 4] };
 
+    /// Of these exponents of metres, radians, seconds and newtons.
+    pub(crate) fn of(exponents: [i8; 4]) -> Self {
+        Self { exponents }
+    }
+
     /// That of a product; none if an exponent becomes too large.
     pub(crate) fn times(self, other: Self) -> Option<Self> {
         self.combine(other, i8::checked_add)

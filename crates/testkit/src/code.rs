@@ -82,7 +82,7 @@ fn function(index: u16, first: u32, end: u32) -> Function {
         .chain((0..MAX_DEPTH * LANES).flat_map(|_| [Type::Int, Type::Bool]));
     let locals = types
         .enumerate()
-        .map(|(at, of_type)| Variable { name: format!("v{at}"), of_type })
+        .map(|(at, of_type)| Variable { name: format!("v{at}"), of_type, measures: None })
         .collect();
     let parameters = if has_parameters(index) { 2 } else { 0 };
     Function {
@@ -115,7 +115,8 @@ fn tables() -> Module {
         respond: Respond::AfterAction,
         continuation: Continuation::Stop,
     };
-    let variable = |name: &str, of_type| Variable { name: name.to_owned(), of_type };
+    let variable =
+        |name: &str, of_type| Variable { name: name.to_owned(), of_type, measures: None };
     Module {
         constants: vec![
             Constant::Int(i64::MAX),

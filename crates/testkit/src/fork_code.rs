@@ -21,7 +21,8 @@ const FLAG: GlobalId = GlobalId(0);
 /// # Errors
 /// None in practice: exhausted randomness yields the simplest choice.
 pub fn module(u: &mut Unstructured<'_>) -> Result<Module> {
-    let variable = |name: &str| Variable { name: name.to_owned(), of_type: Type::Bool };
+    let variable =
+        |name: &str| Variable { name: name.to_owned(), of_type: Type::Bool, measures: None };
     let mut module = Module {
         constants: vec![Constant::Real(0.5)],
         reasons: vec!["because".to_owned()],

@@ -269,6 +269,37 @@ fn the_counter_of_a_loop_is_there_within_it_by_its_name() {
 }
 
 #[test]
+fn variables_are_of_their_units_and_take_no_other() {
+    let source = "action go(d: length, n: number) {\n  var v = d / 2 s\n  wait d / v\n  wait n * 1 s\n}\n\
+                  sequence main { call go(20 mm, 0.5) }\n";
+    let compiled = compile("p.obv", source);
+    let program = verify(compiled.module.expect("it compiles")).expect("it verifies");
+    let mut session = session(&program);
+    session.add_breakpoint(at_line(program.module(), 3));
+    assert!(matches!(session.go(Forward, Walk::Continue), Halt::Hits(_)));
+    session.what_if().expect("it is simulated");
+    let shown = |session: &Session<'_, Ledger>, text: &str| read(session, text).to_string();
+    assert_eq!(shown(&session, "v"), "10 mm/s");
+    assert_eq!(shown(&session, "d + v * 3 s"), "50 mm");
+    let function = program.module().functions.iter().position(|it| it.name == "go").expect("go");
+    let parse = |text: &str| Expression::parse(program.module(), function, text);
+    assert!(parse("d + 1 s").is_err_and(|error| error.why.contains("a length and a time")));
+    let set = |session: &mut Session<'_, Ledger>, name: &str, value: &str| {
+        let (subject, value) = (parse(name).expect(name), parse(value).expect(value));
+        let value = session.look(|look| value.value(look));
+        session.assign(subject.subjects()[0], &value)
+    };
+    for (name, value) in [("d", "7 s"), ("d", "2"), ("n", "3 mm"), ("v", "1 mm")] {
+        let refused = Err(Declined::NotAssignable);
+        assert_eq!(set(&mut session, name, value), refused, "{name} = {value}");
+    }
+    for (name, value) in [("d", "7 mm"), ("n", "2"), ("n", "2.5"), ("v", "1 mm / 1 s")] {
+        assert_eq!(set(&mut session, name, value), Ok(()), "{name} = {value}");
+    }
+    assert_eq!(shown(&session, "d"), "7 mm");
+}
+
+#[test]
 fn history_tells_each_action_once_with_its_way() {
     let program = program();
     let mut session = session(&program);

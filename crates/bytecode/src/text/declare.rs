@@ -506,8 +506,24 @@ fn watched(line: &mut Scanner) -> Result<Watched, AsmError> {
 fn variable(variables: &mut Vec<Variable>, line: &mut Scanner) -> Result<(), AsmError> {
     let name = line.name("name of the variable")?;
     let of_type = line.one_of();
-    variables.push(Variable { name, of_type: *of_type.as_ref().unwrap_or(&Type::Int) });
-    of_type.map(|_| ())
+    let type_or_first = *of_type.as_ref().unwrap_or(&Type::Int);
+    variables.push(Variable { name, of_type: type_or_first, measures: None });
+    of_type?;
+    let measures = match line.optional_word("part of a variable")? {
+        None => None,
+        Some(word) if word.value == "of" => {
+            let mut exponents = [0; 4];
+            for exponent in &mut exponents {
+                *exponent = line.number("exponent")?;
+            }
+            Some(exponents)
+        }
+        Some(word) => {
+            return Err(line.error(word.at, "behind a type there is `of` or nothing"));
+        }
+    };
+    variables.iter_mut().last().into_iter().for_each(|variable| variable.measures = measures);
+    Ok(())
 }
 
 /// What is wrong with a line: there, or with its first word.

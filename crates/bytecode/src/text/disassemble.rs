@@ -8,7 +8,7 @@ use super::words::{self, Word};
 use crate::fault::{Bounds, Watched};
 use crate::module::{
     ErrorDeclaration, Extent, Function, Item, Module, Otherwise, Perturbation, Recovery, Reversal,
-    SourceFile,
+    SourceFile, Variable,
 };
 use obverse_isa::OperandKind;
 use std::fmt::Write;
@@ -83,7 +83,7 @@ fn tables(module: &Module, scope: &Scope, out: &mut String) {
     named(".checkpoint", &module.checkpoints, out);
     named(".reason", &module.reasons, out);
     for variable in &module.globals {
-        let _ = writeln!(out, ".global {} {}", quoted(&variable.name), variable.of_type);
+        let _ = writeln!(out, ".global {}", declared(variable));
     }
     if let Some(cleanup) = module.cleanup {
         let cleanup = name(scope, OperandKind::Function, usize::from(cleanup));
@@ -220,12 +220,20 @@ fn covered(module: &Module) -> Option<usize> {
     (next as usize <= module.code.len()).then_some(next as usize)
 }
 
+/// `"x" real of 1 0 0 0`
+fn declared(variable: &Variable) -> String {
+    let Variable { name, of_type, measures } = variable;
+    let of =
+        |[length, angle, time, force]: &[i8; 4]| format!(" of {length} {angle} {time} {force}");
+    format!("{} {of_type}{}", quoted(name), measures.as_ref().map(of).unwrap_or_default())
+}
+
 fn head(function: &Function, out: &mut String) {
     let Function { name, kind, parameters, locals, counters, slots, first: _, end: _ } = function;
     let _ = writeln!(out, ".function {} {}", quoted(name), kind.word());
     for (at, local) in locals.iter().enumerate() {
         let word = if at < usize::from(*parameters) { ".parameter" } else { ".local" };
-        let _ = writeln!(out, "    {word} {} {}", quoted(&local.name), local.of_type);
+        let _ = writeln!(out, "    {word} {}", declared(local));
     }
     if usize::from(*parameters) > locals.len() {
         let _ = writeln!(out, "    .parameters {parameters}");

@@ -196,7 +196,7 @@ macro_rules! limits {
     )*};
 }
 
-limits! { u8 u16 u32 i64 }
+limits! { i8 u8 u16 u32 i64 }
 
 #[cfg(test)]
 mod tests {

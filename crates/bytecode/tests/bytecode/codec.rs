@@ -202,7 +202,7 @@ fn difference(a: &Module, b: &Module) -> usize {
 
 #[test]
 fn types_and_instructions_are_checked() {
-    let variable = |of_type| Variable { name: "x".to_owned(), of_type };
+    let variable = |of_type| Variable { name: "x".to_owned(), of_type, measures: None };
     let with = |of_type| Module { globals: vec![variable(of_type)], ..Module::default() };
     let mut payload = bytes(&with(Type::Int))[HEADER_BYTES..].to_vec();
     payload[difference(&with(Type::Int), &with(Type::Tool))] = Type::ALL.len() as u8;

@@ -49,8 +49,11 @@ pub(crate) fn every_instruction() -> Vec<Instr> {
 
 fn variables(names: &[&str]) -> Vec<Variable> {
     let types = Type::ALL.iter().cycle();
-    let variable =
-        |(name, of_type): (&&str, &Type)| Variable { name: (*name).to_owned(), of_type: *of_type };
+    let variable = |(name, of_type): (&&str, &Type)| Variable {
+        name: (*name).to_owned(),
+        of_type: *of_type,
+        measures: (*of_type == Type::Real).then_some([1, 0, -2, i8::MIN]),
+    };
     names.iter().zip(types).map(variable).collect()
 }
 
@@ -228,7 +231,7 @@ fn index(u: &mut Unstructured) -> Result<u16> {
 }
 
 fn variable(u: &mut Unstructured) -> Result<Variable> {
-    Ok(Variable { name: text(u)?, of_type: pick(u, &Type::ALL)? })
+    Ok(Variable { name: text(u)?, of_type: pick(u, &Type::ALL)?, measures: u.arbitrary()? })
 }
 
 fn arbitrary_error(u: &mut Unstructured) -> Result<ErrorDeclaration> {

@@ -8,7 +8,7 @@ use crate::tree::{Expression, ExpressionKind};
 use crate::types::ValueType;
 use crate::units::{Dimension, Unit};
 use obverse_bytecode::Keyframe;
-use obverse_isa::{ItemId, KeyframeId, Type};
+use obverse_isa::{ItemId, KeyframeId};
 use obverse_syntax::ast::{
     AdvancedMove, IoOperation, ItemDeclaration, JointsDeclaration, Name, VariableDeclaration,
     Vector,
@@ -179,6 +179,7 @@ impl<'s> Checker<'s> {
             && let Some(variable) = self.module.globals.get_mut(id.index())
         {
             variable.of_type = of_type.machine();
+            variable.measures = of_type.measures();
             self.names.set_global_type(declaration.name.value, of_type);
         }
         self.first_values.push(value);
@@ -235,8 +236,7 @@ impl<'s> Checker<'s> {
 
     /// A variable of a function, of its own name.
     pub(super) fn declare_local(&mut self, name: Name<'s>, of_type: ValueType) -> Meaning {
-        let machine: Type = of_type.machine();
-        let local = self.frame.layout.add(name.value, machine);
+        let local = self.frame.layout.add_typed(name.value, of_type);
         let local = self.room_for(local, name.span);
         let meaning = Meaning::Local(local, of_type);
         self.declare(name, meaning);

@@ -148,6 +148,7 @@ impl<'s> Checker<'s> {
                     self.module.globals.push(obverse_bytecode::Variable {
                         name: variable.name.value.to_owned(),
                         of_type: obverse_isa::Type::Int,
+                        measures: None,
                     });
                     self.declare(variable.name, Meaning::Global(GlobalId(id), ValueType::Unknown));
                 }

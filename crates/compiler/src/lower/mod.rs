@@ -101,7 +101,11 @@ impl HiddenGlobals {
         let mut add = |is_needed: bool, name: &str| {
             is_needed.then(|| {
                 let index = known + variables.len();
-                variables.push(Variable { name: name.to_owned(), of_type: Type::Bool });
+                variables.push(Variable {
+                    name: name.to_owned(),
+                    of_type: Type::Bool,
+                    measures: None,
+                });
                 GlobalId(u16::try_from(index).unwrap_or(u16::MAX))
             })
         };

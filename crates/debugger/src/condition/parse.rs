@@ -404,8 +404,12 @@ impl<'t> Parser<'t, '_> {
     fn word(&mut self, word: &str, at: usize) -> Parsed {
         let subject = |subject, kind| Ok((Node::Subject(subject), kind));
         let measured = |unit| Kind::Number(Measure::Of(unit));
-        if let Some((found, of_type)) = variable(self.module, self.function, word) {
-            return subject(found, Kind::of(of_type));
+        if let Some((found, of_type, unit)) = variable(self.module, self.function, word) {
+            let kind = match (of_type, unit) {
+                (Type::Real, Some(unit)) => measured(unit),
+                _ => Kind::of(of_type),
+            };
+            return subject(found, kind);
         }
         match word {
             "true" | "high" => Ok((Node::Value(Value::Bool(true)), Kind::Bool)),

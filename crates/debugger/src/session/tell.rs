@@ -5,7 +5,7 @@ use super::Session;
 use crate::notes::Note;
 use crate::place::{SourcePlace, source_place};
 use crate::recording::Moment;
-use crate::subject::{Subject, Value, count, loops_around, value, variable};
+use crate::subject::{Subject, Value, count, loops_around, measured, variable};
 use crate::writers::commands;
 use obverse_bytecode::{ActionKind, Module};
 use obverse_isa::{Class, LocalId, Setting};
@@ -127,7 +127,7 @@ impl<C: Workcell> Session<'_, C> {
         let counters = around.map(|around| Variable {
             name: around.name.clone(),
             subject: variable(module, usize::from(called.function), &around.name)
-                .map(|(subject, _)| subject)
+                .map(|(subject, ..)| subject)
                 .filter(|_| is_newest),
             value: Value::Int(count(module, around, called)),
         });
@@ -135,7 +135,7 @@ impl<C: Workcell> Session<'_, C> {
         let local = |(index, declared): (u8, &obverse_bytecode::Variable)| Variable {
             name: declared.name.clone(),
             subject: is_newest.then_some(Subject::Local(called.function, LocalId(index))),
-            value: value(module, declared.of_type, called.local(index)),
+            value: measured(module, declared, called.local(index)),
         };
         locals.map(local).chain(counters).collect()
     }

@@ -214,7 +214,7 @@ fn rule_8_what_takes_a_blocks_place_begins_with_the_locals_around_it() {
             "int" => Type::Int,
             _ => Type::Real,
         });
-        let local = |of_type| Variable { name: format!("{of_type}"), of_type };
+        let local = |of_type| Variable { name: format!("{of_type}"), of_type, measures: None };
         module.functions[0].locals = types.map(local).collect();
         module
     };

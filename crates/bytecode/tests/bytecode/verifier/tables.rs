@@ -12,7 +12,7 @@ type Fill<'a> = dyn Fn(&mut Module, usize) + 'a;
 fn rule_1_tables_fit_their_index() {
     const MOST: usize = u16::MAX as usize;
     let name = String::new;
-    let variable = || Variable { name: name(), of_type: Type::Int };
+    let variable = || Variable { name: name(), of_type: Type::Int, measures: None };
     let item = || Item { name: name(), keyframes: Vec::new() };
     let file = || SourceFile { name: name(), text: String::new() };
     let error = |module: &Module| -> ErrorDeclaration { module.errors[0].clone() };
