@@ -40,6 +40,9 @@ impl Random {
     fn altered(&mut self, valid: &[u8]) -> Vec<u8> {
         let mut bytes = valid.to_vec();
         for _ in 0..=self.below(3) {
+            if bytes.is_empty() {
+                break;
+            }
             let at = self.below(bytes.len());
             let end = (at + 1 + self.below(12)).min(bytes.len());
             match self.below(6) {
