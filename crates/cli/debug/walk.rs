@@ -1,10 +1,10 @@
 //! Walking and jumping, and what is said of where that led.
 
-use super::{Answer, Done, Front, errors};
+use super::{Answer, Done, Front, errors, values};
 use crate::report;
 use obverse_bytecode::FunctionKind;
 use obverse_debugger::recording::Moment;
-use obverse_debugger::{Change, Grain, Halt, Mode, Walk};
+use obverse_debugger::{Change, Grain, Halt, Hit, Mode, Walk};
 use obverse_recovery::drive::ending;
 use obverse_vm::{Direction, Stop};
 use serde_json::{Value, json};
@@ -65,12 +65,24 @@ pub(super) fn walked(
         .with("next", errors::intent(front, halt));
     if let Halt::Hits(hits) = halt {
         let ids: Vec<u32> = hits.iter().map(|hit| hit.id).collect();
-        answer = answer.with("breakpoints", ids);
+        answer = answer.with("breakpoints", ids).with("hits", hits_data(hits, names));
     }
     if let Some(refusal) = halt.refusal() {
         answer = answer.with("stopped_at", report::place(front.module, Some(refusal.pc)));
     }
     front.shown(answer)
+}
+
+/// What was come to, for machines; of a watch with what has changed.
+fn hits_data(hits: &[Hit], names: &BTreeMap<u32, String>) -> Vec<Value> {
+    let data = |hit: &Hit| {
+        let change = hit.change.as_ref().map(|(was, is)| [("before", was), ("after", is)]);
+        let mut data = values::data(change.into_iter().flatten());
+        data.insert("number".to_owned(), json!(hit.id));
+        data.insert("what".to_owned(), json!(names.get(&hit.id)));
+        Value::Object(data)
+    };
+    hits.iter().map(data).collect()
 }
 
 /// Why a walk ended, for machines.
@@ -106,7 +118,7 @@ impl Front<'_> {
         let line = match halt {
             Halt::Done => return Vec::new(),
             Halt::Hits(hits) => {
-                let words = |hit: &obverse_debugger::Hit| {
+                let words = |hit: &Hit| {
                     let name = names.get(&hit.id).map_or("", String::as_str);
                     match &hit.change {
                         Some((was, is)) => {
@@ -183,7 +195,7 @@ impl Front<'_> {
         self.session.interrupter().swap(false, Ordering::Relaxed)
     }
 
-    fn is_in_start(&self) -> bool {
+    pub(super) fn is_in_start(&self) -> bool {
         let here = self.module.function_at(self.session.machine().state().pc());
         let function = here.and_then(|index| self.module.functions.get(index));
         function.is_some_and(|function| function.kind == FunctionKind::Start)
@@ -243,8 +255,8 @@ pub(super) fn last(front: &mut Front<'_>, rest: &str) -> Done {
         .map_err(|_| format!("{rest} did not change before this moment"))?;
     let Change { moment, before, after } = change;
     let line = format!("{rest} was {before} until here, and became {after}");
-    let data =
-        json!({ "moment": moment.0, "before": before.to_string(), "after": after.to_string() });
+    let mut data = values::data([("before", &before), ("after", &after)]);
+    data.insert("moment".to_owned(), json!(moment.0));
     Ok(front.jumped(vec![line]).with("change", data))
 }
 

@@ -298,13 +298,16 @@ impl<'p, C: Workcell> Session<'p, C> {
                 Before::of(&self.breakpoints, look)
             });
             let direction = view.direction(self.run.recording());
-            let to = view.moment().after(PIECE).min(until);
+            let from = view.moment();
+            let to = from.after(PIECE).min(until);
             let halted = view.walk_on(self.run.recording(), to, stops.as_ref());
             if halted == Halted::Lost {
                 break Halt::Lost;
             }
             self.view = Some(view);
-            let hits = self.hits(&before, direction);
+            // Where nothing has moved, nothing is come to.
+            let has_moved = self.moment() > from;
+            let hits = if has_moved { self.hits(&before, direction) } else { Vec::new() };
             let Some(shown) = self.view.take() else { return Halt::Lost };
             view = shown;
             if !hits.is_empty() {
