@@ -5,11 +5,12 @@ use super::{Answer, Done, Front, frames};
 use crate::commands::reach::margin;
 use crate::{report, story};
 use obverse_debugger::session::{Action, Variable};
-use obverse_debugger::{Subject, Unit, Value};
+use obverse_debugger::{Hit, Subject, Unit, Value};
 use obverse_geometry::{JointConfiguration, Pose};
 use obverse_sim::kinematics;
 use obverse_vm::Direction;
 use serde_json::{Map, Value as Json, json};
+use std::collections::BTreeMap;
 
 /// How much of the history is shown unless told otherwise, and at the most.
 const HISTORY: usize = 20;
@@ -47,6 +48,18 @@ pub(super) fn data<'v>(
     }
     data.insert("unit".to_owned(), json!(unit));
     data
+}
+
+/// What was come to, for machines; of a watch with what has changed.
+pub(super) fn hits(hits: &[Hit], names: &BTreeMap<u32, String>) -> Vec<Json> {
+    let one = |hit: &Hit| {
+        let change = hit.change.as_ref().map(|(was, is)| [("before", was), ("after", is)]);
+        let mut it = data(change.into_iter().flatten());
+        it.insert("number".to_owned(), json!(hit.id));
+        it.insert("what".to_owned(), json!(names.get(&hit.id)));
+        Json::Object(it)
+    };
+    hits.iter().map(one).collect()
 }
 
 /// Variables by their names, and the units of those that have one, for machines.

@@ -4,7 +4,7 @@ use super::{Answer, Done, Front, errors, values};
 use crate::report;
 use obverse_bytecode::FunctionKind;
 use obverse_debugger::recording::Moment;
-use obverse_debugger::{Change, Grain, Halt, Hit, Mode, Walk};
+use obverse_debugger::{Change, Grain, Halt, Mode, Walk};
 use obverse_recovery::drive::ending;
 use obverse_vm::{Direction, Stop};
 use serde_json::{Value, json};
@@ -48,6 +48,12 @@ pub(super) fn go(front: &mut Front<'_>, rest: &str, direction: Direction, walk: 
     Ok(walked(front, &halt, direction, &names))
 }
 
+/// Into the first sequence, where that is still to come.
+pub(super) fn enter(front: &mut Front<'_>) -> Option<Done> {
+    let step = Walk::Step(Grain::Statement);
+    front.is_in_start().then(|| go(front, "", Direction::Forward, step))
+}
+
 /// Where a walk has led, and why it ended.
 pub(super) fn walked(
     front: &mut Front<'_>,
@@ -65,24 +71,12 @@ pub(super) fn walked(
         .with("next", errors::intent(front, halt));
     if let Halt::Hits(hits) = halt {
         let ids: Vec<u32> = hits.iter().map(|hit| hit.id).collect();
-        answer = answer.with("breakpoints", ids).with("hits", hits_data(hits, names));
+        answer = answer.with("breakpoints", ids).with("hits", values::hits(hits, names));
     }
     if let Some(refusal) = halt.refusal() {
         answer = answer.with("stopped_at", report::place(front.module, Some(refusal.pc)));
     }
     front.shown(answer)
-}
-
-/// What was come to, for machines; of a watch with what has changed.
-fn hits_data(hits: &[Hit], names: &BTreeMap<u32, String>) -> Vec<Value> {
-    let data = |hit: &Hit| {
-        let change = hit.change.as_ref().map(|(was, is)| [("before", was), ("after", is)]);
-        let mut data = values::data(change.into_iter().flatten());
-        data.insert("number".to_owned(), json!(hit.id));
-        data.insert("what".to_owned(), json!(names.get(&hit.id)));
-        Value::Object(data)
-    };
-    hits.iter().map(data).collect()
 }
 
 /// Why a walk ended, for machines.
@@ -118,7 +112,7 @@ impl Front<'_> {
         let line = match halt {
             Halt::Done => return Vec::new(),
             Halt::Hits(hits) => {
-                let words = |hit: &Hit| {
+                let words = |hit: &obverse_debugger::Hit| {
                     let name = names.get(&hit.id).map_or("", String::as_str);
                     match &hit.change {
                         Some((was, is)) => {
@@ -195,7 +189,7 @@ impl Front<'_> {
         self.session.interrupter().swap(false, Ordering::Relaxed)
     }
 
-    pub(super) fn is_in_start(&self) -> bool {
+    fn is_in_start(&self) -> bool {
         let here = self.module.function_at(self.session.machine().state().pc());
         let function = here.and_then(|index| self.module.functions.get(index));
         function.is_some_and(|function| function.kind == FunctionKind::Start)

@@ -305,7 +305,7 @@ impl<'p, C: Workcell> Session<'p, C> {
                 break Halt::Lost;
             }
             self.view = Some(view);
-            // Where nothing has moved, nothing is come to.
+            // Where nothing was gone over, nothing is come to.
             let has_moved = self.moment() > from;
             let hits = if has_moved { self.hits(&before, direction) } else { Vec::new() };
             let Some(shown) = self.view.take() else { return Halt::Lost };
