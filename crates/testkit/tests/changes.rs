@@ -7,11 +7,8 @@ use obverse_debugger::drive::Pace;
 use obverse_debugger::recording::{Moment, Order};
 use obverse_debugger::rewound::Halted;
 use obverse_debugger::{Change, Declined, Expression, Halt, Run, Session, Value, Walk};
-use obverse_recovery::{Step, Teller};
 use obverse_testkit::Ledger;
-use obverse_vm::{Direction, Event, Observer, Stop};
-use obverse_workcell::Workcell;
-use std::sync::Arc;
+use obverse_vm::{Direction, Stop};
 use std::sync::atomic::{AtomicBool, Ordering};
 
 const PROGRAM: &str = "\
@@ -158,30 +155,4 @@ fn a_search_that_takes_long_can_be_interrupted() {
     assert_eq!(session.moment(), moment);
     let step = Walk::Step(obverse_debugger::Grain::Instruction);
     assert_ne!(session.go(Direction::Forward, step), Halt::Stopped(Stop::AtStart));
-}
-
-/// Interrupts as soon as it is told something.
-struct Impatient(Arc<AtomicBool>);
-
-impl Observer for Impatient {
-    fn on_event(&mut self, _: &Event, _: &dyn Workcell) {
-        self.0.store(true, Ordering::Relaxed);
-    }
-}
-
-impl Teller for Impatient {
-    fn on_step(&mut self, _: &Step<'_>, _: &dyn Workcell) {}
-}
-
-#[test]
-fn a_run_that_tells_much_is_interrupted_before_it_has_told_much_more() {
-    let program = program();
-    let mut session = Session::over(Run::new(&program, Ledger::new(1)).expect("it links"));
-    session.tell_to(Box::new(Impatient(session.interrupter())));
-    for _ in 0..3 {
-        let before = session.moment();
-        assert_eq!(session.go(Direction::Forward, Walk::Continue), Halt::Interrupted);
-        let made = session.moment().0 - before.0;
-        assert!(made <= 1_000, "{made} instructions after what was told first");
-    }
 }
