@@ -99,6 +99,7 @@ fn values_are_numbers_with_their_unit_in_every_answer() {
     );
     let variable = json!([{ "number": 1, "what": "n", "before": 0, "after": 1, "unit": null }]);
     assert_eq!(all[3]["hits"], variable);
+    assert!(all[1]["value"].is_number() && all[1]["unit"] == "rad", "{}", all[1]);
     let now = &all[5]["value"];
     assert!(now.is_number() && all[5]["unit"] == "rad", "{}", all[5]);
     let hits = all[4]["hits"].as_array().expect("hits");
@@ -228,5 +229,6 @@ fn what_the_program_is_yet_to_begin_with_is_said_where_it_is_set() {
     let all = done(&bench, &[&["step"], &commands[..]].concat());
     assert!(text(&all[3]).contains("has yet to give `total` its first value"), "{}", text(&all[3]));
     assert_eq!((&all[5]["value"], text(&all[6])), (&json!(3), "total is 8".to_owned()));
+    assert_eq!(all[6]["value"], 8);
     assert_eq!(all[8]["value"], 9);
 }

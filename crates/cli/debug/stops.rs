@@ -118,7 +118,8 @@ pub(super) fn watch(front: &mut Front<'_>, rest: &str) -> Done {
     let condition = condition_of(front, front.function(), condition)?;
     let breakpoint = Breakpoint { condition, direction, ..Breakpoint::on_change(expression) };
     let id = front.session.add_breakpoint(breakpoint);
-    Ok(Answer::line(format!("watch {id}: {what}, which is {now}")).with("breakpoint", id))
+    let answer = Answer::line(format!("watch {id}: {what}, which is {now}"));
+    Ok(answer.with("breakpoint", id).with_all(values::data([("value", &now)])))
 }
 
 fn number(text: &str) -> Result<u32, String> {

@@ -1,6 +1,6 @@
 //! What would have been: a run of its own, and what is changed in it.
 
-use super::{Answer, Done, Front};
+use super::{Answer, Done, Front, values};
 use obverse_debugger::{Declined, Expression, Subject};
 use obverse_isa::Instr;
 
@@ -42,7 +42,7 @@ pub(super) fn set(front: &mut Front<'_>, rest: &str) -> Done {
              the first sequence: `step` leads there, and a `set` after it holds"
         ));
     }
-    Ok(Answer::lines(lines))
+    Ok(Answer::lines(lines).with_all(values::data([("value", &now)])))
 }
 
 impl Front<'_> {
