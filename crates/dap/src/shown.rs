@@ -155,7 +155,7 @@ fn variable(variable: &Variable) -> Value {
         "type": type_name(&variable.value),
         "variablesReference": if is_arm { JOINTS } else { 0 },
     });
-    if !matches!(variable.subject, None | Some(Subject::Setting(_))) {
+    if variable.subject.is_some() {
         shown["evaluateName"] = json!(variable.name);
     }
     shown
