@@ -8,6 +8,7 @@ use crate::problem::{Message, Problem, plain};
 use crate::show;
 use obverse_bytecode::{SourceFile, encode, fingerprint, verify};
 use obverse_debugger::{Before, CellFile, Run, TapeFile, Taped, Writer, taped};
+use obverse_geometry::Pose;
 use obverse_recovery::{Direct, Driven};
 use obverse_sim::Sim;
 use obverse_vm::Machine;
@@ -164,6 +165,16 @@ impl Opened {
         let of_source = source.iter().flat_map(show::diagnostic_lines);
         let why = messages.iter().map(ToString::to_string).chain(of_source).next();
         Some(format!("nothing can be tried otherwise: {}", why.unwrap_or_default()))
+    }
+
+    /// Where the tool centre points of the workcell that the run was in are on the tool mount; none
+    /// where its file cannot be read.
+    pub(crate) fn tcps(&self) -> Vec<Pose> {
+        let cell = match &self.file.head.cell {
+            Some(CellFile { name, text }) => load::cell_of(Path::new(name), text).ok(),
+            None => Some(load::bare().0),
+        };
+        cell.map_or(Vec::new(), |cell| cell.tools.iter().map(|tool| tool.tcp).collect())
     }
 
     /// How the run ended, in words.

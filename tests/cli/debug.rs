@@ -145,7 +145,7 @@ fn the_last_change_is_found_again_and_again_and_a_jump_is_undone() {
     let bench = bench("last");
     let all = answers(&bench, &["c", "last output 2", "last output 2", "last output 2", "undo"]);
     assert_eq!(all[1..4].iter().map(line).collect::<Vec<_>>(), [&json!(8), &json!(5), &json!(8)]);
-    assert_eq!(all[1]["change"]["before"], "true");
+    assert_eq!(all[1]["change"]["before"], true);
     assert_eq!(all[4]["position"], all[2]["position"]);
     // Before what is shown no error was raised; from the end it is found.
     let ran = piped(&bench, &[], &["c", "goto start", "goto error"]);

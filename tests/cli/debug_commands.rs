@@ -28,7 +28,7 @@ sequence main {
 }
 ";
 
-fn bench(name: &str) -> Bench {
+pub(crate) fn bench(name: &str) -> Bench {
     let bench = Bench::new(&format!("debug_commands_{name}"));
     bench.write("p.obv", PROGRAM);
     bench
@@ -45,7 +45,7 @@ fn fed(bench: &Bench, arguments: &[&str], input: &[u8]) -> Ran {
 }
 
 /// The answers to commands, as many as there are of them.
-fn answers(bench: &Bench, commands: &[&str]) -> Vec<Value> {
+pub(crate) fn answers(bench: &Bench, commands: &[&str]) -> Vec<Value> {
     let ran = piped_to(bench, &["debug", "p.obv", "--json"], commands);
     let answers: Vec<Value> =
         ran.json().into_iter().filter(|line| line["type"] == "answer").collect();
@@ -54,7 +54,7 @@ fn answers(bench: &Bench, commands: &[&str]) -> Vec<Value> {
 }
 
 /// Answers to commands that are all carried out.
-fn done(bench: &Bench, commands: &[&str]) -> Vec<Value> {
+pub(crate) fn done(bench: &Bench, commands: &[&str]) -> Vec<Value> {
     let answers = answers(bench, commands);
     for answer in &answers {
         assert_eq!(answer["done"], true, "{answer}");
@@ -62,12 +62,12 @@ fn done(bench: &Bench, commands: &[&str]) -> Vec<Value> {
     answers
 }
 
-fn text(answer: &Value) -> String {
+pub(crate) fn text(answer: &Value) -> String {
     let lines = answer["text"].as_array().expect("text");
     lines.iter().filter_map(Value::as_str).collect::<Vec<_>>().join("\n")
 }
 
-fn line(answer: &Value) -> &Value {
+pub(crate) fn line(answer: &Value) -> &Value {
     &answer["position"]["line"]
 }
 

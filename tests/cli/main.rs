@@ -5,6 +5,7 @@ mod commands;
 mod debug;
 mod debug_after;
 mod debug_commands;
+mod debug_data;
 mod debug_errors;
 mod fmt;
 mod imports;

@@ -188,10 +188,19 @@ fn everything_is_shown() {
     let scopes = client.ok("scopes", json!({ "frameId": 1 }));
     let scopes = scopes["scopes"].as_array().expect("scopes").clone();
     assert_eq!(scopes.len(), 5);
+    let mut named = Vec::new();
     for scope in &scopes {
         let reference = json!({ "variablesReference": scope["variablesReference"] });
-        client.ok("variables", reference);
+        let variables = client.ok("variables", reference)["variables"].clone();
+        for variable in variables.as_array().expect("variables") {
+            let Some(name) = variable["evaluateName"].as_str() else { continue };
+            let asked = json!({ "expression": name, "frameId": 1, "context": "watch" });
+            let result = client.ok("evaluate", asked)["result"].clone();
+            assert_eq!(result, variable["value"], "{name}");
+            named.push(name.to_owned());
+        }
     }
+    assert!(named.iter().any(|name| name == "reverse.force_limit"), "{named:?}");
     let arm = client.ok("variables", json!({ "variablesReference": 5 }));
     assert_eq!(arm["variables"].as_array().map(Vec::len), Some(6));
     let asked = json!({ "memoryReference": "0", "instructionOffset": -3, "instructionCount": 9 });

@@ -11,6 +11,7 @@ use crate::report::Report;
 use crate::story::Story;
 use crate::{Outcome, lacking, taping, write};
 use obverse_debugger::{Policy, Run, Session};
+use obverse_geometry::Pose;
 use obverse_sim::Sim;
 use serde_json::json;
 use signal_hook::consts::SIGINT;
@@ -79,7 +80,8 @@ fn live(arguments: &Arguments, file: &Path) -> Result {
         let (name, after) = (file.display(), after::words(arguments.after.after.as_deref()));
         write::line(&format!("{name} in {}, seed {}{after}", cell_file.name, arguments.seed));
     }
-    converse(arguments, run.simulated(None), (arguments.seed, Some(&kept)), lines)
+    let run = run.simulated(None);
+    converse(arguments, (run, Vec::new()), (arguments.seed, Some(&kept)), lines)
 }
 
 /// A run as its tape tells it. What would have been can be tried where its workcell is to be had.
@@ -121,7 +123,8 @@ fn post_mortem(arguments: &Arguments, tape: &Path, file: Option<&Path>) -> Resul
         write::line(&opened.ending());
         opened.lacks(lacks.as_ref()).iter().for_each(|text| write::line(text));
     }
-    converse(arguments, run.simulated(start), (head.seed, None), lines)
+    let run = run.simulated(start);
+    converse(arguments, (run, opened.tcps()), (head.seed, None), lines)
 }
 
 /// The first Ctrl-C halts the command under way, between instructions; where it has found nothing
@@ -136,7 +139,7 @@ fn interrupt(session: &Session<'_, Sim>) -> std::result::Result<(), Problem> {
 
 fn converse(
     arguments: &Arguments,
-    run: Run<'_, Sim>,
+    (run, tcps): (Run<'_, Sim>, Vec<Pose>),
     (seed, kept): (u64, Option<&Kept>),
     mut lines: Lines,
 ) -> Result {
@@ -150,7 +153,8 @@ fn converse(
     });
     let policy = Policy { strategy: arguments.policy.strategy, ..Policy::declared(seed) };
     session.recover_by(policy, kept.map(Kept::memory).unwrap_or_default());
-    let mut front = Front::over(session, Face::of(arguments.json), arguments.release);
+    let face = Face::of(arguments.json);
+    let mut front = Front::over(session, tcps, (face, arguments.release));
     let failed = front.converse(&mut lines)?;
     kept.map_or(Ok(()), |kept| kept.keep(front.memory()))?;
     Ok(if failed == 0 || lines.is_terminal() { Outcome::Done } else { Outcome::EndedOtherwise })

@@ -175,12 +175,20 @@ fn asked_for(front: &Front<'_>, asked: &str) -> Result<(u16, Range<usize>), Stri
         None => (front.here().0, asked),
     };
     let line = |text: &str| text.trim().parse::<usize>().ok().filter(|line| *line > 0);
+    let present = |line: usize| {
+        let source = front.module.sources.get(usize::from(file));
+        let count = source.map_or(0, |source| source.text.lines().count());
+        let missing = || format!("there is no line {line}: the last is {count}");
+        (line <= count).then_some(line).ok_or_else(missing)
+    };
     if let Some((first, last)) = asked.split_once(',') {
         let lines = match (line(first), line(last)) {
-            (Some(first), Some(last)) if first <= last => first..last.saturating_add(1),
-            (Some(first), None) if last.trim().is_empty() => first..first.saturating_add(LINES),
+            (Some(first), Some(last)) if first <= last => present(first)?..last.saturating_add(1),
+            (Some(first), None) if last.trim().is_empty() => {
+                present(first)?..first.saturating_add(LINES)
+            }
             (None, Some(last)) if first.trim().is_empty() => {
-                let end = last.saturating_add(1);
+                let end = present(last)?.saturating_add(1);
                 end.saturating_sub(LINES).max(1)..end
             }
             _ => return Err(format!("`{asked}` is no first and last line")),
@@ -188,7 +196,7 @@ fn asked_for(front: &Front<'_>, asked: &str) -> Result<(u16, Range<usize>), Stri
         return Ok((file, lines));
     }
     if let Some(line) = line(asked) {
-        return Ok((file, around(line)));
+        return Ok((file, around(present(line)?)));
     }
     let named = front.module.functions.iter().find(|function| function.name == asked);
     // What is in front of its first statement may be written nowhere.

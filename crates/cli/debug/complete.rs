@@ -4,6 +4,7 @@ use super::Front;
 use super::stops::INFO;
 use super::table::{self, Offers};
 use obverse_bytecode::{FunctionKind, Mentioned};
+use obverse_isa::Setting;
 use rustyline::completion::Completer as Completes;
 use rustyline::highlight::Highlighter;
 use rustyline::hint::Hinter;
@@ -35,7 +36,8 @@ pub(super) fn names(front: &Front<'_>) -> Names {
         Mentioned::Input { name, .. } => Some(format!("input {name}")),
         _ => None,
     });
-    let plain = ["force", "held", "holding", "joints", "time", "speed", "tool", "steps"];
+    let plain = ["force", "held", "holding", "joints", "time", "steps"];
+    let settings = Setting::ALL.iter().map(|setting| setting.name());
     let marks = session.bookmarks().keys().cloned();
     let words = ["start", "end", "error"].map(str::to_owned);
     Names {
@@ -43,7 +45,7 @@ pub(super) fn names(front: &Front<'_>) -> Names {
         values: variables
             .map(|variable| variable.name)
             .chain(lines)
-            .chain(plain.map(str::to_owned))
+            .chain(plain.into_iter().chain(settings).map(str::to_owned))
             .collect(),
         moments: words.into_iter().chain(marks).chain(checkpoints).collect(),
         breakpoints: session.breakpoints().iter().map(|it| it.id.to_string()).collect(),

@@ -2,7 +2,7 @@
 
 use super::{Answer, Done, Front, values};
 use obverse_debugger::{Expression, Subject, Value};
-use serde_json::{Value as Json, json};
+use serde_json::{Map, Value as Json, json};
 
 /// The most that is shown at once.
 const MAX_DISPLAYS: usize = 100;
@@ -48,10 +48,12 @@ impl Front<'_> {
         };
         answer.lines.extend(displayed.iter().map(line));
         let data = |(number, expression, value): &(u32, &Expression, Value)| {
-            let (value, unit) = (values::json_of(value), values::unit_of(value));
-            json!({ "number": number, "text": expression.text(), "value": value, "unit": unit })
+            let mut data = values::data([("value", value)]);
+            data.insert("number".to_owned(), json!(number));
+            data.insert("text".to_owned(), json!(expression.text()));
+            data
         };
-        let data: Vec<Json> = displayed.iter().map(data).collect();
+        let data: Vec<Map<String, Json>> = displayed.iter().map(data).collect();
         answer.with("display", data)
     }
 }
@@ -73,7 +75,7 @@ pub(super) fn display(front: &mut Front<'_>, rest: &str) -> Done {
     let line = format!("{number}: {} = {value}", expression.text());
     front.displays.all.push((number, expression));
     let answer = Answer::line(line).with("number", number);
-    Ok(answer.with("value", values::json_of(&value)).with("unit", values::unit_of(&value)))
+    Ok(answer.with_all(values::data([("value", &value)])))
 }
 
 pub(super) fn undisplay(front: &mut Front<'_>, rest: &str) -> Done {

@@ -14,6 +14,9 @@ use std::path::Path;
 /// The longest line, in bytes.
 const MAX_LINE: u64 = 4096;
 
+/// What tells that a file is text in UTF-8, if it does.
+const MARK: &str = "\u{feff}";
+
 /// What is read.
 pub(super) enum Line {
     /// A command without the blanks around it. From a terminal, it may be empty.
@@ -91,6 +94,8 @@ impl Lines {
                         }
                         return Ok(Line::Bad(format!("line {number} of {name} is {why}")));
                     }
+                    // Editors mark the beginning of a text file.
+                    Raw::Text(text) if *number == 1 => text.trim_start_matches(MARK).to_owned(),
                     Raw::Text(text) => text,
                 };
                 // A remark is shown, too: it is for who reads what was said.

@@ -28,6 +28,7 @@ use displays::Displays;
 use lines::Line;
 use obverse_bytecode::Module;
 use obverse_debugger::{Mode, Session};
+use obverse_geometry::Pose;
 use obverse_recovery::Memory;
 use obverse_sim::Sim;
 use serde_json::{Map, Value, json};
@@ -69,6 +70,12 @@ impl Answer {
         self.data.insert(name.to_owned(), value.into());
         self
     }
+
+    /// The same with several things for machines.
+    fn with_all(mut self, data: Map<String, Value>) -> Self {
+        self.data.extend(data);
+        self
+    }
 }
 
 /// An answer, or why the command was not carried out.
@@ -79,6 +86,8 @@ pub(crate) struct Front<'p> {
     session: Session<'p, Sim>,
     module: &'p Module,
     margin: Margin,
+    /// Of a recording, where its tools' centre points are on the tool mount, if that is known.
+    tcps: Vec<Pose>,
     face: Face,
     listed: Option<Listed>,
     /// How far out the call is that is looked at, from the innermost.
@@ -92,13 +101,18 @@ pub(crate) struct Front<'p> {
 }
 
 impl<'p> Front<'p> {
-    pub(crate) fn over(session: Session<'p, Sim>, face: Face, releases: u32) -> Self {
+    pub(crate) fn over(
+        session: Session<'p, Sim>,
+        tcps: Vec<Pose>,
+        (face, releases): (Face, u32),
+    ) -> Self {
         let module = session.module();
         let margin = Margin::of(module);
         Self {
             session,
             module,
             margin,
+            tcps,
             face,
             listed: None,
             selected: 0,

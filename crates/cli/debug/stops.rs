@@ -8,6 +8,14 @@ use std::collections::{BTreeMap, BTreeSet};
 
 /// Something and the condition behind it.
 fn split_if(text: &str) -> (&str, Option<&str>) {
+    if let Some(condition) =
+        text.strip_prefix("if").filter(|it| it.is_empty() || it.starts_with(' '))
+    {
+        return ("", Some(condition.trim()));
+    }
+    if let Some(what) = text.strip_suffix(" if") {
+        return (what.trim(), Some(""));
+    }
     match text.split_once(" if ") {
         Some((what, condition)) => (what.trim(), Some(condition.trim())),
         None => (text, None),
@@ -88,6 +96,9 @@ fn condition_of(
     function: usize,
     text: Option<&str>,
 ) -> Result<Option<Expression>, String> {
+    if text == Some("") {
+        return Err("a condition is missing behind `if`".to_owned());
+    }
     let condition = text.map(|text| Expression::condition(front.module, function, text));
     condition.map(|condition| front.checked(condition)).transpose()
 }
@@ -100,11 +111,15 @@ pub(super) fn watch(front: &mut Front<'_>, rest: &str) -> Done {
         _ => (what, None),
     };
     let expression = front.expression(what)?;
+    if expression.subjects().is_empty() {
+        return Err(format!("`{what}` never changes: watch what may"));
+    }
     let now = front.session.look(|look| expression.value(look));
     let condition = condition_of(front, front.function(), condition)?;
     let breakpoint = Breakpoint { condition, direction, ..Breakpoint::on_change(expression) };
     let id = front.session.add_breakpoint(breakpoint);
-    Ok(Answer::line(format!("watch {id}: {what}, which is {now}")).with("breakpoint", id))
+    let answer = Answer::line(format!("watch {id}: {what}, which is {now}"));
+    Ok(answer.with("breakpoint", id).with_all(values::data([("value", &now)])))
 }
 
 fn number(text: &str) -> Result<u32, String> {
@@ -221,17 +236,32 @@ pub(super) const INFO: [&str; 9] = [
 ];
 
 pub(super) fn info(front: &mut Front<'_>, rest: &str) -> Done {
-    match rest {
-        "breakpoints" | "break" | "b" | "watchpoints" => Ok(breakpoints(front)),
+    match subject_of(rest)? {
+        "breakpoints" => Ok(breakpoints(front)),
         "bookmarks" => Ok(walk::bookmarks(front)),
         "display" => Ok(displays::info(front)),
-        "frame" | "f" => frames::info(front),
+        "frame" => frames::info(front),
         "locals" => values::locals(front, ""),
-        "globals" | "variables" => values::globals(front, ""),
-        "stack" | "s" => frames::backtrace(front, ""),
-        "state" | "registers" => values::state(front, ""),
-        "history" => values::history(front, ""),
-        _ => Err(format!("say of what: {}", INFO.join(", "))),
+        "globals" => values::globals(front, ""),
+        "stack" => frames::backtrace(front, ""),
+        "state" => values::state(front, ""),
+        _ => values::history(front, ""),
+    }
+}
+
+/// What is asked for: by its name, by what it is called elsewhere, or by the beginning of its name
+/// that is no other's.
+fn subject_of(text: &str) -> Result<&'static str, String> {
+    let begun = |name: &&str| !text.is_empty() && name.starts_with(text);
+    let begun: Vec<&'static str> = INFO.into_iter().filter(begun).collect();
+    match (text, &begun[..]) {
+        ("b" | "watchpoints", _) => Ok("breakpoints"),
+        ("s", _) => Ok("stack"),
+        ("variables", _) => Ok("globals"),
+        ("registers", _) => Ok("state"),
+        (_, [one]) => Ok(one),
+        (_, []) => Err(format!("say of what: {}", INFO.join(", "))),
+        (_, several) => Err(format!("`{text}` may be {}", several.join(" or "))),
     }
 }
 

@@ -150,7 +150,8 @@ pub(super) const COMMANDS: &[Command] = &[
         Offers::Info, stops::info,
         "what there is of them"),
     command(&["print", "p"], "[EXPRESSION]", "looking", Offers::Values, values::print,
-        "what it is; without one, every variable"),
+        "what it is: a variable, `force`, `held`, `output 2`, `joint 1`, a setting as \
+         `reverse.speed`, or what is worked out of them; without one, every variable"),
     command(&["display"], "[EXPRESSION]", "looking", Offers::Values, displays::display,
         "show it wherever a command leads; without one, show what is shown"),
     command(&["undisplay"], "[NUMBER...]", "looking", Offers::Displays, displays::undisplay,

@@ -1,7 +1,8 @@
 //! What would have been: a run of its own, and what is changed in it.
 
-use super::{Answer, Done, Front};
+use super::{Answer, Done, Front, values};
 use obverse_debugger::{Declined, Expression, Subject};
+use obverse_isa::Instr;
 
 pub(super) fn what_if(front: &mut Front<'_>, _: &str) -> Done {
     front.session.what_if().map_err(|why| why.to_string())?;
@@ -34,7 +35,26 @@ pub(super) fn set(front: &mut Front<'_>, rest: &str) -> Done {
         why => why.to_string(),
     })?;
     let now = front.session.look(|look| subject.read(look));
-    Ok(Answer::line(format!("{name} is {now}")))
+    let mut lines = vec![format!("{name} is {now}")];
+    if front.is_yet_to_begin(&subject) {
+        lines.push(format!(
+            "the program has yet to give `{name}` its first value, and does so on its way into \
+             the first sequence: `step` leads there, and a `set` after it holds"
+        ));
+    }
+    Ok(Answer::lines(lines).with_all(values::data([("value", &now)])))
+}
+
+impl Front<'_> {
+    /// Whether the start of the program has yet to give a variable its first value.
+    fn is_yet_to_begin(&self, subject: &Subject) -> bool {
+        let (Subject::Global(of), Some(start)) = (subject, self.calls().pop()) else {
+            return false;
+        };
+        let end = self.module.functions.get(usize::from(start.function)).map_or(0, |it| it.end);
+        let mut code = self.module.code.iter().take(end as usize).skip(start.pc as usize);
+        code.any(|instr| matches!(instr, Instr::StoreGlobal { global, .. } if global == of))
+    }
 }
 
 pub(super) fn input(front: &mut Front<'_>, rest: &str) -> Done {

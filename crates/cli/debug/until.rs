@@ -10,10 +10,10 @@ use std::collections::BTreeSet;
 /// On to a place, or until the call is over; without a place, past this line.
 pub(super) fn until(front: &mut Front<'_>, rest: &str) -> Done {
     match rest {
-        "" => match further(front) {
+        "" => walk::enter(front).unwrap_or_else(|| match further(front) {
             Some(places) => go(front, (places, None), Walk::Finish),
             None => walk::go(front, "", Direction::Forward, Walk::Finish),
-        },
+        }),
         _ => {
             let found = stops::places(front, rest)?;
             go(front, found, Walk::Finish)

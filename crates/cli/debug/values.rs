@@ -5,11 +5,12 @@ use super::{Answer, Done, Front, frames};
 use crate::commands::reach::margin;
 use crate::{report, story};
 use obverse_debugger::session::{Action, Variable};
-use obverse_debugger::{Subject, Unit, Value};
+use obverse_debugger::{Hit, Subject, Unit, Value};
 use obverse_geometry::{JointConfiguration, Pose};
 use obverse_sim::kinematics;
 use obverse_vm::Direction;
 use serde_json::{Map, Value as Json, json};
+use std::collections::BTreeMap;
 
 /// How much of the history is shown unless told otherwise, and at the most.
 const HISTORY: usize = 20;
@@ -17,19 +18,18 @@ const MAX_HISTORY: usize = 10_000;
 /// How many marks a gauge has.
 const GAUGE: usize = 24;
 
-pub(super) fn json_of(value: &Value) -> Json {
+fn json_of(value: &Value) -> Json {
     match value {
         Value::Int(value) => json!(value),
         Value::Real(value) | Value::Quantity(value, _) => json!(value),
         Value::Bool(value) => json!(value),
         Value::Joints(joints) => json!(joints),
         Value::Name(name) => json!(name),
-        Value::Absent | Value::Wrong(_) => Json::Null,
+        Value::Unlimited | Value::Absent | Value::Wrong(_) => Json::Null,
     }
 }
 
-/// The unit of a number for machines, which are told numbers in SI units.
-pub(super) fn unit_of(value: &Value) -> Option<String> {
+fn unit_of(value: &Value) -> Option<String> {
     match value {
         Value::Quantity(_, unit) => Some(unit.to_string()),
         Value::Joints(_) => Some(Unit::ANGLE.to_string()),
@@ -37,17 +37,46 @@ pub(super) fn unit_of(value: &Value) -> Option<String> {
     }
 }
 
-fn listed(variables: &[Variable], none: &str) -> Answer {
-    let mut lines: Vec<String> = variables
-        .iter()
-        .map(|variable| format!("{} = {}", variable.name, variable.value))
-        .collect();
+/// Values of one thing by name, for machines: numbers in SI units, and the unit of them.
+pub(super) fn data<'v>(
+    values: impl IntoIterator<Item = (&'static str, &'v Value)>,
+) -> Map<String, Json> {
+    let (mut data, mut unit) = (Map::new(), None);
+    for (name, value) in values {
+        data.insert(name.to_owned(), json_of(value));
+        unit = unit.or_else(|| unit_of(value));
+    }
+    data.insert("unit".to_owned(), json!(unit));
+    data
+}
+
+/// What was come to, for machines; of a watch with what has changed.
+pub(super) fn hits(hits: &[Hit], names: &BTreeMap<u32, String>) -> Vec<Json> {
+    let one = |hit: &Hit| {
+        let change = hit.change.as_ref().map(|(was, is)| [("before", was), ("after", is)]);
+        let mut it = data(change.into_iter().flatten());
+        it.insert("number".to_owned(), json!(hit.id));
+        it.insert("what".to_owned(), json!(names.get(&hit.id)));
+        Json::Object(it)
+    };
+    hits.iter().map(one).collect()
+}
+
+/// Variables by their names, and the units of those that have one, for machines.
+fn variables(variables: &[Variable]) -> [Map<String, Json>; 2] {
+    let values = variables.iter().map(|it| (it.name.clone(), json_of(&it.value)));
+    let unit = |it: &Variable| unit_of(&it.value).map(|unit| (it.name.clone(), json!(unit)));
+    [values.collect(), variables.iter().filter_map(unit).collect()]
+}
+
+fn listed(all: &[Variable], none: &str) -> Answer {
+    let mut lines: Vec<String> =
+        all.iter().map(|variable| format!("{} = {}", variable.name, variable.value)).collect();
     if lines.is_empty() {
         lines.push(none.to_owned());
     }
-    let values: Map<String, Json> =
-        variables.iter().map(|it| (it.name.clone(), json_of(&it.value))).collect();
-    Answer::lines(lines).with("values", values)
+    let [values, units] = variables(all);
+    Answer::lines(lines).with("values", values).with("units", units)
 }
 
 pub(super) fn print(front: &mut Front<'_>, rest: &str) -> Done {
@@ -61,8 +90,7 @@ pub(super) fn print(front: &mut Front<'_>, rest: &str) -> Done {
     if let Value::Wrong(why) = value {
         return Err(format!("`{rest}` cannot be worked out: {why}"));
     }
-    let answer = Answer::line(format!("{rest} = {value}"));
-    Ok(answer.with("value", json_of(&value)).with("unit", unit_of(&value)))
+    Ok(Answer::line(format!("{rest} = {value}")).with_all(data([("value", &value)])))
 }
 
 pub(super) fn locals(front: &mut Front<'_>, rest: &str) -> Done {
@@ -85,11 +113,11 @@ fn gauge(value: f64, [least, most]: [f64; 2]) -> String {
 }
 
 pub(super) fn state(front: &mut Front<'_>, _: &str) -> Done {
-    let variables = front.session.workcell();
+    let all = front.session.workcell();
     let is_output = |it: &&Variable| matches!(it.subject, Some(Subject::Output(_)));
-    let (outputs, others): (Vec<&Variable>, Vec<&Variable>) = variables.iter().partition(is_output);
+    let (outputs, others): (Vec<&Variable>, Vec<&Variable>) = all.iter().partition(is_output);
     let mut lines: Vec<String> = others.into_iter().flat_map(shown).collect();
-    let joints = variables.iter().find_map(|it| match it.value {
+    let joints = all.iter().find_map(|it| match it.value {
         Value::Joints(joints) => Some(JointConfiguration(joints)),
         _ => None,
     });
@@ -108,14 +136,13 @@ pub(super) fn state(front: &mut Front<'_>, _: &str) -> Done {
     };
     let outputs: Vec<String> = outputs.iter().map(level).collect();
     lines.extend(outputs.chunks(4).map(|some| some.join(", ")));
-    let values: Map<String, Json> =
-        variables.iter().map(|it| (it.name.clone(), json_of(&it.value))).collect();
+    let [values, units] = variables(&all);
     let pose = json!({
         "of": name,
         "translation_m": <[f64; 3]>::from(pose.translation_m),
         "rotation_vector_rad": pose.rotation_vector_rad(),
     });
-    Ok(Answer::lines(lines).with("values", values).with("pose", pose))
+    Ok(Answer::lines(lines).with("values", values).with("units", units).with("pose", pose))
 }
 
 /// A number to a tenth; nothing is no less than nothing.
@@ -123,14 +150,17 @@ fn tenths(value: f64) -> String {
     format!("{:.1}", (value * 10.0).round() / 10.0 + 0.0)
 }
 
-/// Where the tool centre point is in the base frame; of a recording, whose workcell may not be
-/// there, where the tool mount is.
+/// Where the tool centre point is in the base frame; of a tape whose workcell file cannot be read,
+/// where the tool mount is.
 fn tool_pose(front: &Front<'_>, joints: &JointConfiguration) -> (&'static str, Pose) {
     let mount = kinematics::forward(joints);
     let tool = usize::from(front.session.machine().tool().0);
-    let tool = front.session.run().cell().and_then(|sim| sim.cell().tools.get(tool));
-    match tool {
-        Some(tool) => ("tcp", mount.compose(&tool.tcp)),
+    let tcp = match front.session.run().cell() {
+        Some(sim) => sim.cell().tools.get(tool).map(|tool| tool.tcp),
+        None => front.tcps.get(tool).copied(),
+    };
+    match tcp {
+        Some(tcp) => ("tcp", mount.compose(&tcp)),
         None => ("mount", mount),
     }
 }
@@ -151,7 +181,6 @@ fn shown(variable: &Variable) -> Vec<String> {
             format!("{name:<8} {force_n:>8.2} N    [{}]", gauge(*force_n, [0.0, 50.0]))
         }
         (Some(Subject::Time), Value::Quantity(time_s, _)) => format!("{name:<8} {time_s:>8.2} s"),
-        (_, Value::Name(text)) if text.is_empty() => format!("{name:<8} none"),
         (_, value) => format!("{name:<8} {value}"),
     }]
 }

@@ -1,6 +1,6 @@
 //! Walking and jumping, and what is said of where that led.
 
-use super::{Answer, Done, Front, errors};
+use super::{Answer, Done, Front, errors, values};
 use crate::report;
 use obverse_bytecode::FunctionKind;
 use obverse_debugger::recording::Moment;
@@ -47,6 +47,12 @@ pub(super) fn go(front: &mut Front<'_>, rest: &str, direction: Direction, walk: 
     Ok(walked(front, &halt, direction, &names))
 }
 
+/// Into the first sequence, where that is still to come.
+pub(super) fn enter(front: &mut Front<'_>) -> Option<Done> {
+    let step = Walk::Step(Grain::Statement);
+    front.is_in_start().then(|| go(front, "", Direction::Forward, step))
+}
+
 /// Where a walk has led, and why it ended.
 pub(super) fn walked(
     front: &mut Front<'_>,
@@ -64,7 +70,7 @@ pub(super) fn walked(
         .with("next", errors::intent(front, halt));
     if let Halt::Hits(hits) = halt {
         let ids: Vec<u32> = hits.iter().map(|hit| hit.id).collect();
-        answer = answer.with("breakpoints", ids);
+        answer = answer.with("breakpoints", ids).with("hits", values::hits(hits, names));
     }
     if let Some(refusal) = halt.refusal() {
         answer = answer.with("stopped_at", report::place(front.module, Some(refusal.pc)));
@@ -244,8 +250,8 @@ pub(super) fn last(front: &mut Front<'_>, rest: &str) -> Done {
         .map_err(|why| unless_there(why, || format!("{rest} did not change before this moment")))?;
     let Change { moment, before, after } = change;
     let line = format!("{rest} was {before} until here, and became {after}");
-    let data =
-        json!({ "moment": moment.0, "before": before.to_string(), "after": after.to_string() });
+    let mut data = values::data([("before", &before), ("after", &after)]);
+    data.insert("moment".to_owned(), json!(moment.0));
     Ok(front.jumped(vec![line]).with("change", data))
 }
 

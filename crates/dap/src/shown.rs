@@ -155,7 +155,7 @@ fn variable(variable: &Variable) -> Value {
         "type": type_name(&variable.value),
         "variablesReference": if is_arm { JOINTS } else { 0 },
     });
-    if !matches!(variable.subject, None | Some(Subject::Setting(_))) {
+    if variable.subject.is_some() {
         shown["evaluateName"] = json!(variable.name);
     }
     shown
@@ -165,7 +165,7 @@ fn variable(variable: &Variable) -> Value {
 pub(crate) fn type_name(value: &Known) -> &'static str {
     match value {
         Known::Int(_) => "integer",
-        Known::Real(_) | Known::Quantity(..) => "real",
+        Known::Real(_) | Known::Quantity(..) | Known::Unlimited => "real",
         Known::Bool(_) => "truth value",
         Known::Joints(_) => "joints",
         Known::Name(_) => "name",

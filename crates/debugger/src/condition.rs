@@ -184,6 +184,7 @@ impl Node {
             (Self::Not(_), Value::Bool(value)) => Value::Bool(!value),
             (Self::Minus(_), Value::Int(value)) => integer(value.checked_neg()),
             (Self::Minus(_), Value::Real(value) | Value::Quantity(value, _)) => Value::Real(-value),
+            (Self::Minus(_), Value::Unlimited) => Value::Real(f64::NEG_INFINITY),
             (_, Value::Wrong(why)) => Value::Wrong(why),
             _ => Value::Absent,
         }
@@ -257,6 +258,7 @@ fn real(value: &Value) -> Option<f64> {
     match value {
         Value::Int(value) => Some(*value as f64),
         Value::Real(value) | Value::Quantity(value, _) => Some(*value),
+        Value::Unlimited => Some(f64::INFINITY),
         _ => None,
     }
 }

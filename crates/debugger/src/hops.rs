@@ -7,13 +7,13 @@ use crate::run::{Live, Run};
 use obverse_isa::ErrorId;
 use obverse_recovery as recovery;
 use obverse_tape::Note;
-use obverse_vm::{Alteration, Direction, Machine, Mark, Observer, Stop, Stops};
+use obverse_vm::{Alteration, Direction, Event, Machine, Mark, Observer, Stop, Stops};
 use obverse_workcell::{Arm, Fault, Motion, Watching, Workcell};
 use std::sync::atomic::{AtomicBool, Ordering};
 
 /// How many instructions a live run makes at once, at the most: as often it can be interrupted.
 const BURST: u64 = 1 << 18;
-/// The same where it commands the workcell, which takes longer.
+/// The same where it has something to tell, as every command is told: that takes longer.
 const SLOW_BURST: u64 = 256;
 
 /// A live run, driven hop by hop: a run forward comes back at a stop, a run in reverse behind
@@ -52,16 +52,17 @@ impl<'r, 'p, C: Workcell> Hops<'r, 'p, C> {
 
     fn forward(&mut self, instructions: u64, observer: &mut dyn Observer) -> Stop {
         let until = self.live.past.recording.end.after(instructions);
-        let mut most = BURST;
+        let mut most = SLOW_BURST;
         loop {
-            let commands = self.live.past.recording.log.frames.len();
             let is_close = self.is_at_stop() || self.live.past.machine.state().is_compensating();
             let pace = match self.stops {
                 Some(stops) if !is_close => Pace::To(stops, most.min(instructions)),
                 _ => Pace::Step,
             };
             let is_step = matches!(pace, Pace::Step);
-            let driven = self.drive(Order::Forward, pace, observer);
+            let mut heard = Heard { observer, is_told: false };
+            let driven = self.drive(Order::Forward, pace, &mut heard);
+            most = if heard.is_told { SLOW_BURST } else { BURST.min(most * 2) };
             if let Some(stop) = driven.stop {
                 return stop;
             }
@@ -69,8 +70,6 @@ impl<'r, 'p, C: Workcell> Hops<'r, 'p, C> {
             if is_over || self.interrupt.load(Ordering::Relaxed) || self.is_at_stop() {
                 return Stop::Budget;
             }
-            let is_slow = self.live.past.recording.log.frames.len() > commands;
-            most = if is_slow { SLOW_BURST } else { BURST };
         }
     }
 
@@ -82,6 +81,19 @@ impl<'r, 'p, C: Workcell> Hops<'r, 'p, C> {
             true => Some(Stop::AtMark),
             false => Some(Stop::OffMark),
         }
+    }
+}
+
+/// Who is told of a run, and whether anything was.
+struct Heard<'o> {
+    observer: &'o mut dyn Observer,
+    is_told: bool,
+}
+
+impl Observer for Heard<'_> {
+    fn on_event(&mut self, event: &Event, cell: &dyn Workcell) {
+        self.is_told = true;
+        self.observer.on_event(event, cell);
     }
 }
 

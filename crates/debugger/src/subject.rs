@@ -77,6 +77,9 @@ pub enum Subject {
     Steps,
 }
 
+/// What no tool is called, and no limit.
+pub(crate) const NONE: &str = "none";
+
 /// What it is.
 #[derive(Clone, Debug)]
 pub enum Value {
@@ -86,6 +89,8 @@ pub enum Value {
     Real(f64),
     /// A real and what it measures, in SI units.
     Quantity(f64, Unit),
+    /// A limit that there is not: more than any number.
+    Unlimited,
     /// A truth value or a level.
     Bool(bool),
     /// Six joints, in radians.
@@ -128,7 +133,7 @@ impl PartialEq for Value {
             (Self::Bool(a), Self::Bool(b)) => a == b,
             (Self::Joints(a), Self::Joints(b)) => a.map(f64::to_bits) == b.map(f64::to_bits),
             (Self::Name(a), Self::Name(b)) => a == b,
-            (Self::Absent, Self::Absent) => true,
+            (Self::Absent, Self::Absent) | (Self::Unlimited, Self::Unlimited) => true,
             (Self::Wrong(a), Self::Wrong(b)) => a == b,
             _ => false,
         }
@@ -141,6 +146,7 @@ impl std::fmt::Display for Value {
             Self::Int(value) => value.fmt(f),
             Self::Real(value) => write!(f, "{value:?}"),
             Self::Quantity(value, unit) => f.write_str(&unit.shown(*value)),
+            Self::Unlimited => f.write_str(NONE),
             Self::Bool(value) => value.fmt(f),
             Self::Joints(joints) => {
                 let joints = joints.map(|joint| format!("{:.2}", joint.to_degrees())).join(", ");
@@ -168,7 +174,7 @@ pub fn value(module: &Module, of_type: Type, bits: u64) -> Value {
             let speed = SpeedId::ALL.get(index).map_or("", |speed| speed.name());
             Value::Name(speed.replace('_', " "))
         }
-        Type::Tool => name(module.tools.get(index)),
+        Type::Tool => Value::Name(module.tools.get(index).map_or(NONE, String::as_str).to_owned()),
     }
 }
 
@@ -266,6 +272,7 @@ impl Subject {
             Self::Setting(setting) => {
                 let bits = look.state.settings()[setting as usize];
                 match (setting, value(look.module, setting.of_type(), bits)) {
+                    (Setting::ReverseForceLimit, Value::Real(f64::INFINITY)) => Value::Unlimited,
                     (Setting::ReverseForceLimit, Value::Real(limit_n)) => {
                         Value::Quantity(limit_n, Unit::FORCE)
                     }
@@ -418,5 +425,7 @@ pub(crate) fn nearest_variable<'m>(
     let here = module.functions.get(function).map_or(0..0, |it| it.first..it.end);
     let loops = module.loops.iter().filter(|around| here.contains(&around.enter));
     let loops = loops.map(|around| around.name.as_str());
-    nearest(name, all.map(|variable| variable.name.as_str()).chain(loops))
+    let names = all.map(|variable| variable.name.as_str()).chain(loops);
+    // What the compiler keeps for itself is nobody's to name.
+    nearest(name, names.filter(|name| !name.starts_with('$')))
 }

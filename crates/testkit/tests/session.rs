@@ -2,18 +2,20 @@
 //! end that it comes to by itself, with the same story and the same tape, and learns the same.
 
 use obverse_bytecode::{Verified, verify};
-use obverse_compiler::compile_files;
+use obverse_compiler::{compile, compile_files};
 use obverse_debugger::{Halt, Policy, Run, Session, Walk};
 use obverse_recovery::{
     Bounds, Incident, Memory, Operator, Outcome, PERSON_S, Recovery, Step, Strategy, Subject,
     Teller, recover,
 };
 use obverse_sim::{Cell, FaultPlan, Sim};
+use obverse_testkit::Ledger;
 use obverse_testkit::faulty::Faulty;
 use obverse_testkit::files::Folder;
 use obverse_vm::{Direction, Event, Limits, Machine, Observer};
 use obverse_workcell::{Fault, FaultKind, Workcell};
 use std::path::Path;
+use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex};
 
 const PROGRAMS_FOLDER: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../programs");
@@ -160,4 +162,33 @@ fn continue_alone_is_the_run() {
         }
     }
     assert!(recovered > 60 && given_up > 8, "{recovered} recovered, {given_up} given up");
+}
+
+/// Interrupts as soon as it is told something.
+struct Impatient(Arc<AtomicBool>);
+
+impl Observer for Impatient {
+    fn on_event(&mut self, _: &Event, _: &dyn Workcell) {
+        self.0.store(true, Ordering::Relaxed);
+    }
+}
+
+impl Teller for Impatient {
+    fn on_step(&mut self, _: &Step<'_>, _: &dyn Workcell) {}
+}
+
+#[test]
+fn a_run_that_tells_much_is_interrupted_before_it_has_told_much_more() {
+    let source = "var n = 0\nsequence add { n += 1 }\nsequence main {\n  \
+                  for turn from 1 to 5000 { call add }\n  if n > 0 { set 1 high }\n}\n";
+    let compiled = compile("p.obv", source);
+    let program = verify(compiled.module.expect("it compiles")).expect("it verifies");
+    let mut session = Session::over(Run::new(&program, Ledger::new(1)).expect("it links"));
+    session.tell_to(Box::new(Impatient(session.interrupter())));
+    for _ in 0..3 {
+        let before = session.moment();
+        assert_eq!(session.go(Direction::Forward, Walk::Continue), Halt::Interrupted);
+        let made = session.moment().0 - before.0;
+        assert!(made <= 1_000, "{made} instructions, of which the first ones were told");
+    }
 }

@@ -1,7 +1,7 @@
 //! The text of a condition: words, numbers with units, operators; and what type each part has.
 
 use super::{ConditionError, Node, Operator};
-use crate::subject::{Subject, Value, line, nearest_variable, variable};
+use crate::subject::{NONE, Subject, Value, line, nearest_variable, variable};
 use crate::unit::Unit;
 use obverse_bytecode::Module;
 use obverse_bytecode::text::nearest;
@@ -68,9 +68,9 @@ impl Kind {
 }
 
 /// Words that are no variables here.
-const WORDS: [&str; 17] = [
+const WORDS: [&str; 15] = [
     "output", "input", "joint", "joints", "force", "held", "holding", "error", "time", "steps",
-    "speed", "tool", "and", "or", "not", "true", "false",
+    "and", "or", "not", "true", "false",
 ];
 
 /// Units, what one is in SI units, and what it measures.
@@ -429,9 +429,16 @@ impl<'t> Parser<'t, '_> {
             "error" => subject(Subject::Error(self.declared_error()?), Kind::Bool),
             "time" => subject(Subject::Time, measured(Unit::TIME)),
             "steps" => subject(Subject::Steps, PLAIN),
-            "speed" => subject(Subject::Setting(Setting::Speed), Kind::Name),
-            "tool" => subject(Subject::Setting(Setting::Tool), Kind::Name),
-            name => self.name(name, at),
+            name => match Setting::ALL.iter().find(|setting| setting.name() == name) {
+                Some(setting) => {
+                    let kind = match setting {
+                        Setting::ReverseForceLimit => measured(Unit::FORCE),
+                        _ => Kind::of(setting.of_type()),
+                    };
+                    subject(Subject::Setting(*setting), kind)
+                }
+                None => self.name(name, at),
+            },
         }
     }
 
@@ -442,13 +449,14 @@ impl<'t> Parser<'t, '_> {
             || module.tools.iter().any(|tool| tool == name)
             || module.joints.iter().any(|(joints, _)| joints == name)
             || SpeedId::ALL.iter().any(|speed| speed.name() == name)
-            || name == "nothing";
+            || ["nothing", NONE].contains(&name);
         if is_known {
             let is_speed = SpeedId::ALL.iter().any(|speed| speed.name() == name);
             let name = if is_speed { name.replace('_', " ") } else { name.to_owned() };
             return Ok((Node::Value(Value::Name(name)), Kind::Name));
         }
-        let meant = nearest_variable(module, self.function, name).or_else(|| nearest(name, WORDS));
+        let words = WORDS.into_iter().chain(Setting::ALL.iter().map(|setting| setting.name()));
+        let meant = nearest_variable(module, self.function, name).or_else(|| nearest(name, words));
         let hint = meant.map(|meant| format!("; `{meant}`?")).unwrap_or_default();
         Err(ConditionError { at, why: format!("nothing is called `{name}` here{hint}") })
     }
