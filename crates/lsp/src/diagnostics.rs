@@ -9,7 +9,7 @@ use lsp_types::{
     DiagnosticTag, Location, Range, TextEdit, Uri, WorkspaceEdit,
 };
 use obverse_syntax::codes::Code;
-use obverse_syntax::diagnostic::{self, Severity};
+use obverse_syntax::diagnostic::{self, Severity, Suggestion};
 use std::collections::{BTreeMap, HashMap};
 
 impl Workspace {
@@ -83,31 +83,47 @@ impl Workspace {
         for file in self.files(uri) {
             let program = &file.program;
             for one in &program.compiled.diagnostics {
-                let Some(suggestion) = &one.suggestion else { continue };
                 let at = program.range(file.file, one.primary.span);
                 let Some(at) = at.filter(|at| at.start <= range.end && range.start <= at.end)
                 else {
                     continue;
                 };
-                let Some((key, place)) = program.place(suggestion.span) else { continue };
-                if is_of_library(&key) {
-                    continue;
-                }
-                let edit = TextEdit::new(place, suggestion.text.clone());
-                let action = CodeAction {
-                    title: one.help.clone().unwrap_or_else(|| one.message.clone()),
-                    kind: Some(CodeActionKind::QuickFix),
-                    diagnostics: Some(vec![self.shown(program, one, at)]),
-                    is_preferred: Some(true),
-                    edit: Some(changes([(self.uri(&key), edit)])),
-                    ..CodeAction::default()
-                };
-                if !actions.contains(&action) {
-                    actions.push(action);
+                for action in self.mending(program, one, at) {
+                    if !actions.contains(&action) {
+                        actions.push(action);
+                    }
                 }
             }
         }
         actions
+    }
+
+    /// The changes that mend one thing: the one that does, or those of which a person chooses one.
+    fn mending(
+        &self,
+        program: &Program,
+        one: &diagnostic::Diagnostic,
+        at: Range,
+    ) -> Vec<CodeAction> {
+        let the_one = one.suggestion.iter().map(|change| {
+            let title = one.help.clone().unwrap_or_else(|| one.message.clone());
+            (title, change, Some(true))
+        });
+        let choices = one.choices.iter();
+        let choices = choices.map(|one| (format!("write `{}`", one.text.trim()), one, None));
+        let action = |(title, change, is_preferred): (String, &Suggestion, Option<bool>)| {
+            let (key, place) = program.place(change.span)?;
+            let edit = TextEdit::new(place, change.text.clone());
+            (!is_of_library(&key)).then(|| CodeAction {
+                title,
+                kind: Some(CodeActionKind::QuickFix),
+                diagnostics: Some(vec![self.shown(program, one, at)]),
+                is_preferred,
+                edit: Some(changes([(self.uri(&key), edit)])),
+                ..CodeAction::default()
+            })
+        };
+        the_one.chain(choices).filter_map(action).collect()
     }
 
     /// The text in its canonical layout, as one change of what differs; none where it has mistakes
