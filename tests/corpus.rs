@@ -195,6 +195,10 @@ fn check_change(
     if let Some(same) = left.diagnostics.iter().find(is_same) {
         return Err(format!("`{}` does not mend: {}", suggestion.text, same.message).into());
     }
+    if !diagnostic.choices.is_empty() {
+        // What is chosen may be seen to be of no use where it stands.
+        return Ok(());
+    }
     // Measured from the end, which the change does not move.
     let from_end = |compiled: &Compiled| {
         let length = compiled.sources.whole().len();

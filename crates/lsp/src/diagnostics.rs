@@ -1,6 +1,7 @@
 //! Diagnostics and what mends them, as editors take them. It knows how they are shown, and none of
 //! them.
 
+use crate::disk::Lacking;
 use crate::position::{Lines, boundary};
 use crate::program::{Program, is_of_library};
 use crate::workspace::Workspace;
@@ -47,6 +48,13 @@ impl Workspace {
             let of_file = found.entry(key).or_default();
             let shown = self.shown(program, one, range);
             // A file may be part of several programs.
+            if !of_file.contains(&shown) {
+                of_file.push(shown);
+            }
+        }
+        for lacking in self.lacking(program) {
+            let Some((key, shown)) = of_workcell(program, &lacking) else { continue };
+            let of_file = found.entry(key).or_default();
             if !of_file.contains(&shown) {
                 of_file.push(shown);
             }
@@ -133,6 +141,34 @@ impl Workspace {
         let formatted = obverse_syntax::format::format(&document.text).ok()?;
         Some(difference(&document.text, &formatted).into_iter().collect())
     }
+}
+
+/// What is lacking in the workcell, in the file of the program that asks for it.
+fn of_workcell(program: &Program, lacking: &Lacking) -> Option<(String, Diagnostic)> {
+    let names = program.sources();
+    let file = (0..names.len()).find(|file| names.name(*file) == lacking.file)?;
+    if is_of_library(&lacking.file) {
+        return None;
+    }
+    let (text, lines) = (program.text(file), program.lines(file)?);
+    let start = lines.offset_of(text, lacking.line, lacking.column);
+    let end = start.saturating_add(word_length(&text[start as usize..]));
+    let diagnostic = Diagnostic {
+        range: lines.range(text, obverse_syntax::span::Span::new(start, end)),
+        severity: Some(DiagnosticSeverity::Error),
+        code: lacking.code.map(Into::into),
+        source: Some("obverse".to_owned()),
+        message: lacking.message.clone().into(),
+        ..Diagnostic::default()
+    };
+    Some((program.key(file), diagnostic))
+}
+
+/// How many bytes the word, the number or the text in quotes has that something begins with.
+fn word_length(text: &str) -> u32 {
+    let quoted = text.strip_prefix('"').and_then(|rest| rest.find('"')).map(|end| end + 2);
+    let word = || text.find(|c: char| !c.is_alphanumeric() && c != '_').unwrap_or(text.len());
+    u32::try_from(quoted.unwrap_or_else(word)).unwrap_or(u32::MAX)
 }
 
 /// Changes of files, by address.

@@ -68,9 +68,15 @@ pub(super) fn initialized() -> InitializeResult {
     InitializeResult::new(capabilities, Some(ServerInfo { name: "obverse".to_owned(), version }))
 }
 
+/// Whether an editor says when it is initialized that it can be asked to tell of files.
+pub(super) fn can_watch(params: &Value) -> bool {
+    let of_workspace = &params["capabilities"]["workspace"];
+    of_workspace["didChangeWatchedFiles"]["dynamicRegistration"] == true
+}
+
 /// The request to be told of files that change on the disk.
 pub(super) fn watching() -> Request {
-    let watchers = json!([{ "globPattern": "**/*.obv" }]);
+    let watchers = json!([{ "globPattern": "**/*.{obv,toml}" }]);
     let registration = json!({
         "id": "files",
         "method": "workspace/didChangeWatchedFiles",
