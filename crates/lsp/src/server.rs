@@ -124,6 +124,8 @@ impl Server<'_> {
             (Stage::Uninitialized, "initialize") => {
                 self.stage = Stage::Serving;
                 self.can_watch = answer::can_watch(&request.params);
+                let can_have_none = answer::can_have_none_active(&request.params);
+                self.workspace.can_have_none_active = can_have_none;
                 self.send(Response::new_ok(request.id, answer::initialized()));
             }
             (Stage::Uninitialized, _) => {

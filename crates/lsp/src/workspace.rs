@@ -36,6 +36,8 @@ pub struct Workspace {
     newest: HashMap<String, Rc<Program>>,
     /// The files that programs begin in which a file is part of.
     roots: HashMap<String, Vec<String>>,
+    /// Whether the editor can be told that no parameter is at hand.
+    pub(crate) can_have_none_active: bool,
 }
 
 /// A file of a program.
@@ -56,6 +58,7 @@ impl Workspace {
             programs: HashMap::new(),
             newest: HashMap::new(),
             roots: HashMap::new(),
+            can_have_none_active: false,
         }
     }
 

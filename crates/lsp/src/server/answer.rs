@@ -74,6 +74,13 @@ pub(super) fn can_watch(params: &Value) -> bool {
     of_workspace["didChangeWatchedFiles"]["dynamicRegistration"] == true
 }
 
+/// Whether an editor says when it is initialized that it can be told of no parameter at hand.
+pub(super) fn can_have_none_active(params: &Value) -> bool {
+    let of_help = &params["capabilities"]["textDocument"]["signatureHelp"];
+    let of_signature = &of_help["signatureInformation"];
+    [of_help, of_signature].iter().any(|known| known["noActiveParameterSupport"] == true)
+}
+
 /// The request to be told of files that change on the disk.
 pub(super) fn watching() -> Request {
     let watchers = json!([{ "globPattern": "**/*.{obv,toml}" }]);
