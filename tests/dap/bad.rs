@@ -260,7 +260,9 @@ fn what_cannot_be_set_is_shown_so_and_said_so() {
     let read_only = json!({ "attributes": ["readOnly"] });
     assert_eq!(found(&shown, "force"), read_only, "{shown}");
     assert_eq!(found(&shown, "input 0"), Value::Null, "{shown}");
-    let set = |reference: u64, name: &str, value: &str| json!({ "variablesReference": reference, "name": name, "value": value });
+    fn set(variables: u64, name: &str, value: &str) -> Value {
+        json!({ "variablesReference": variables, "name": name, "value": value })
+    }
     let why = client.refused("setVariable", set(2, "force", "3"));
     assert_eq!(why, "`force` can only be looked at: variables and inputs can be set");
     let globals = client.ok("variables", json!({ "variablesReference": 1 }))["variables"].clone();
