@@ -16,7 +16,7 @@ use obverse_compiler::{
 };
 use obverse_syntax::MAX_SOURCE_BYTES;
 use obverse_syntax::codes::Code;
-use obverse_syntax::diagnostic::{Diagnostic, Severity};
+use obverse_syntax::diagnostic::{Diagnostic, Severity, Suggestion};
 use obverse_syntax::source::LineIndex;
 use obverse_syntax::sources::{Place, Sources};
 use obverse_testkit::files::Folder;
@@ -163,7 +163,20 @@ fn check_suggestion(
     name: &str,
     diagnostic: &Diagnostic,
 ) -> Result<(), Failed> {
-    let Some(suggestion) = &diagnostic.suggestion else { return Ok(()) };
+    diagnostic
+        .suggestion
+        .iter()
+        .chain(&diagnostic.choices)
+        .try_for_each(|change| check_change(folder, compiled, name, diagnostic, change))
+}
+
+fn check_change(
+    folder: &Folder,
+    compiled: &Compiled,
+    name: &str,
+    diagnostic: &Diagnostic,
+    suggestion: &Suggestion,
+) -> Result<(), Failed> {
     let Place { file, span } = compiled.sources.locate(suggestion.span);
     let range = span.start as usize..span.end as usize;
     let mut mended = compiled.sources.text(file).to_owned();
@@ -181,6 +194,10 @@ fn check_suggestion(
     };
     if let Some(same) = left.diagnostics.iter().find(is_same) {
         return Err(format!("`{}` does not mend: {}", suggestion.text, same.message).into());
+    }
+    if !diagnostic.choices.is_empty() {
+        // What is chosen may be seen to be of no use where it stands.
+        return Ok(());
     }
     // Measured from the end, which the change does not move.
     let from_end = |compiled: &Compiled| {

@@ -1,11 +1,13 @@
 //! What a program needs and its workcell has not: said of both, the line of the program that needs
 //! it and the line of the workcell file that could have it.
 
-use crate::load::{Program, Workcell};
+use crate::load::{self, Program, Workcell};
 use crate::problem::Message;
-use obverse_bytecode::{Mention, Mentioned, Module};
+use obverse_bytecode::{Mention, Mentioned, Module, verify};
+use obverse_lsp::Lacking;
 use obverse_sim::{CellCode, CellPlaces};
 use obverse_vm::LinkError;
+use std::path::Path;
 
 /// So many names of what is there are told.
 const NAMES_MAX: usize = 6;
@@ -17,8 +19,42 @@ pub(crate) fn messages(
     errors: &[LinkError],
 ) -> Vec<Message> {
     let places = workcell.text.as_deref().map(CellPlaces::of);
-    let lacking = Lacking { program, workcell, places };
-    errors.iter().map(|error| lacking.message(error)).collect()
+    let sought = Sought { program, workcell, places };
+    errors.iter().map(|error| sought.message(error)).collect()
+}
+
+/// What is wrong with the workcell of a program or is lacking in it, as `check` finds it, by the
+/// places of the program.
+pub(crate) fn in_its_cell(path: &Path, module: &Module) -> Vec<Lacking> {
+    let names: Vec<String> = module.sources.iter().map(|source| source.name.clone()).collect();
+    let cell = module.mentions.iter().find(|mention| mention.what == Mentioned::Cell);
+    let cell = cell.and_then(|mention| module.place_of_mention(mention));
+    let cell = cell.map(|(file, line, column)| (file.to_owned(), (line, column)));
+    // What does not verify is no fault of the workcell.
+    let Ok(verified) = verify(module.clone()) else { return Vec::new() };
+    // Without sources of its own, so that its files are called as in the module.
+    let program = Program { path: path.to_owned(), verified, source: None };
+    let found = load::workcell(&program, None, 0)
+        .and_then(|(sim, workcell)| load::machine(&program, &sim, &workcell).map(drop));
+    let messages = found.err().map(|problem| problem.messages).unwrap_or_default();
+    let of_message = |message: &Message| {
+        let own = placed(message, &names)
+            .or_else(|| message.also.iter().find_map(|also| placed(also, &names)));
+        let (file, (line, column)) = own.or_else(|| cell.clone())?;
+        let text = std::iter::once(message).chain(&message.also).map(|one| match &one.file {
+            Some(file) if names.contains(file) => one.text.clone(),
+            _ => one.to_string(),
+        });
+        let text = text.collect::<Vec<_>>().join("\n");
+        Some(Lacking { file, line, column, code: message.code, message: text })
+    };
+    messages.iter().filter_map(of_message).collect()
+}
+
+/// The place of a message, if it is in one of some files.
+fn placed(message: &Message, files: &[String]) -> Option<(String, (usize, usize))> {
+    let file = message.file.clone().filter(|file| files.contains(file))?;
+    Some((file, message.place?))
 }
 
 fn code(error: &LinkError) -> CellCode {
@@ -30,7 +66,7 @@ fn code(error: &LinkError) -> CellCode {
     }
 }
 
-struct Lacking<'p> {
+struct Sought<'p> {
     program: &'p Program,
     workcell: &'p Workcell,
     /// None without a workcell file.
@@ -40,7 +76,7 @@ struct Lacking<'p> {
 /// A place as files, lines and columns go.
 type Place<'m> = Option<(&'m str, usize, usize)>;
 
-impl<'p> Lacking<'p> {
+impl<'p> Sought<'p> {
     fn message(&self, error: &LinkError) -> Message {
         let text = format!("{error} (workcell: {})", self.workcell.name);
         let message = match error {

@@ -6,7 +6,7 @@ use crate::files;
 use crate::load::{self, Program, Workcell};
 use crate::problem::{Message, Problem, plain};
 use crate::show;
-use obverse_bytecode::{SourceFile, encode, fingerprint, verify};
+use obverse_bytecode::{encode, fingerprint, verify};
 use obverse_debugger::{Before, CellFile, Run, TapeFile, Taped, Writer, taped};
 use obverse_geometry::Pose;
 use obverse_recovery::{Direct, Driven};
@@ -133,17 +133,6 @@ impl Opened {
              ({is:016x}); leave the program out: the tape has its own, or record the run again"
         );
         Err(Problem::of_file(&self.path, text))
-    }
-
-    /// The source files of its program that are on disk as they were when it ran.
-    pub(crate) fn paths(&self) -> Vec<Option<PathBuf>> {
-        let folder = self.program.path.with_file_name("");
-        let path = |source: &SourceFile| {
-            let path = folder.join(&source.name);
-            let is_same = files::read(&path).is_ok_and(|bytes| bytes == source.text.as_bytes());
-            is_same.then(|| std::path::absolute(&path).unwrap_or(path))
-        };
-        self.program.verified.module().sources.iter().map(path).collect()
     }
 
     /// What it is a tape of.

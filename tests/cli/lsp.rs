@@ -3,7 +3,7 @@
 
 use crate::support::Bench;
 use serde_json::{Value, json};
-use std::io::Write;
+use std::io::{BufRead, BufReader, Write};
 use std::process::Stdio;
 
 /// A message as it goes over the stream.
@@ -155,4 +155,67 @@ fn an_exit_at_once_is_told_from_one_after_a_shutdown() {
     let mut input = begin();
     input.extend(end());
     assert_eq!(session(&bench, &input).0, 0);
+}
+
+/// The diagnostics of a program that is opened in the folder of programs.
+fn published(bench: &Bench, text: &str) -> Vec<Value> {
+    let uri = format!("file://{}", bench.path("open.obv").display());
+    let document = json!({ "uri": uri, "languageId": "obverse", "version": 1, "text": text });
+    let mut input = begin();
+    input.extend(notification("textDocument/didOpen", json!({ "textDocument": document })));
+    // Answered behind what is published.
+    input.extend(request(2, "textDocument/codeLens", json!({ "textDocument": { "uri": uri } })));
+    let mut command = bench.command(&["lsp"]);
+    command.stdin(Stdio::piped()).stdout(Stdio::piped()).stderr(Stdio::null());
+    let mut child = command.spawn().expect("the binary runs");
+    let mut server = child.stdin.take().expect("it has one");
+    server.write_all(&input).expect("it reads");
+    let mut output = BufReader::new(child.stdout.take().expect("it has one"));
+    let found = loop {
+        let message = read_message(&mut output);
+        if message["method"] == "textDocument/publishDiagnostics" {
+            break message["params"]["diagnostics"].as_array().cloned().unwrap_or_default();
+        }
+    };
+    server.write_all(&end()).expect("it reads");
+    child.wait().expect("it ends");
+    found
+}
+
+fn read_message(output: &mut impl BufRead) -> Value {
+    let mut length = 0;
+    loop {
+        let mut line = String::new();
+        assert!(output.read_line(&mut line).expect("it is text") > 0, "it ended");
+        match line.trim().strip_prefix("Content-Length: ") {
+            Some(number) => length = number.parse().expect("a length"),
+            None => break,
+        }
+    }
+    let mut body = vec![0; length];
+    output.read_exact(&mut body).expect("a whole message");
+    serde_json::from_slice(&body).expect("a message is JSON")
+}
+
+#[test]
+fn what_the_workcell_has_not_is_published_where_the_program_asks_for_it() {
+    let bench = Bench::new("lsp_workcell");
+    let place = |one: &Value| {
+        let start = &one["range"]["start"];
+        (start["line"].as_u64(), start["character"].as_u64())
+    };
+    let wrong = "cell \"pin_cell.toml\"\nitem pin_9 { keyframe at = [0, 0, 0] mm }\n\
+                 sequence main {\n  move to pin_9.at\n  set 77 high\n}\n";
+    let found = published(&bench, wrong);
+    let codes: Vec<&Value> = found.iter().map(|one| &one["code"]).collect();
+    assert_eq!(codes, ["C0201", "C0203"], "{found:?}");
+    assert_eq!(place(&found[0]), (Some(1), Some(5)), "{found:?}");
+    assert_eq!(found[0]["range"]["end"]["character"], 10, "{found:?}");
+    assert_eq!(place(&found[1]).0, Some(4), "{found:?}");
+    let found = published(&bench, &wrong.replace("pin_9", "pin_1").replace("77", "1"));
+    assert_eq!(found, Vec::<Value>::new());
+    let found = published(&bench, "cell \"none.toml\"\nsequence main { wait 1 s }\n");
+    assert_eq!((found.len(), place(&found[0])), (1, (Some(0), Some(5))), "{found:?}");
+    let message = found[0]["message"].as_str().expect("it says why");
+    assert!(message.contains("none.toml") && message.contains("cannot be read"), "{message}");
 }

@@ -29,7 +29,6 @@ fn wrong_requests_are_refused_and_change_nothing() {
         ("nonsense", json!({})),
         ("configurationDone", json!({})),
         ("setBreakpoints", json!({})),
-        ("setBreakpoints", json!({ "source": { "path": "/other.obv" }, "breakpoints": [] })),
         ("scopes", json!({ "frameId": 99 })),
         ("scopes", json!({ "frameId": -1 })),
         ("variables", json!({ "variablesReference": 77 })),
@@ -180,4 +179,95 @@ fn what_does_not_compile_is_told() {
     let why = client.refused("launch", json!({ "program": path }));
     assert!(why.contains("nowhere"), "{why}");
     assert_eq!(client.bye("diagnostics"), Some(0));
+}
+
+#[test]
+fn breakpoints_that_cannot_be_are_told_one_by_one() {
+    let mut client = Client::at_entry("glue.obv");
+    let why = |answer: &Value| {
+        assert_eq!(answer["verified"], false, "{answer}");
+        answer["message"].as_str().expect("it says why").to_owned()
+    };
+    let points = json!([
+        { "line": 30, "condition": "output 99" },
+        { "line": 30, "logMessage": "it is {input 99}" },
+        { "line": "x" },
+        { "line": 30, "condition": "output 0" },
+    ]);
+    let source = json!({ "path": "glue.obv" });
+    let asked = json!({ "source": source, "breakpoints": points });
+    let answers = client.ok("setBreakpoints", asked)["breakpoints"].clone();
+    assert!(why(&answers[0]).contains("no output 99"), "{answers}");
+    assert!(why(&answers[1]).contains("99"), "{answers}");
+    assert!(why(&answers[2]).contains("`line` of a breakpoint must be"), "{answers}");
+    assert_eq!(answers[3]["verified"], true, "{answers}");
+    let data = json!({ "breakpoints": [{ "dataId": "0:output 99" }] });
+    let answers = client.ok("setDataBreakpoints", data)["breakpoints"].clone();
+    assert!(why(&answers[0]).contains("no output 99"), "{answers}");
+    let other = json!({ "source": { "path": "/other.obv" }, "lines": [1, 2] });
+    let answers = client.ok("setBreakpoints", other)["breakpoints"].clone();
+    assert!(why(&answers[0]).contains("no file of the program"), "{answers}");
+    assert_eq!(answers.as_array().map(Vec::len), Some(2));
+    let lines = client.ok("setBreakpoints", json!({ "source": source, "lines": [30, 31] }));
+    assert_eq!(lines["breakpoints"].as_array().map(Vec::len), Some(2));
+    assert_eq!(lines["breakpoints"][1]["verified"], true);
+    assert_eq!(client.bye("points"), Some(0));
+    let mut client = Client::new();
+    client.ok("initialize", json!({ "adapterID": "obverse" }));
+    client.ok("launch", json!({ "program": "glue.obv", "noDebug": true }));
+    for (request, points) in [
+        ("setBreakpoints", json!({ "source": source, "breakpoints": [{ "line": 30 }] })),
+        ("setFunctionBreakpoints", json!({ "breakpoints": [{ "name": "main" }] })),
+        ("setExceptionBreakpoints", json!({ "filters": ["due"] })),
+    ] {
+        let answers = client.ok(request, points)["breakpoints"].clone();
+        assert!(why(&answers[0]).contains("without stops"), "{answers}");
+    }
+    assert_eq!(client.bye("points_no_debug"), Some(0));
+}
+
+#[test]
+fn what_is_wrong_with_a_request_is_said_in_words_of_the_protocol() {
+    let mut client = Client::new();
+    let why = client.refused("initialize", json!({ "linesStartAt1": "yes" }));
+    assert_eq!(why, "`linesStartAt1` of `initialize` must be true or false, and is \"yes\"");
+    let why = client.refused("initialize", json!({ "pathFormat": "uri" }));
+    assert!(why.contains("`pathFormat` must be `path`"), "{why}");
+    client.ok("initialize", json!({ "pathFormat": "path" }));
+    client.ok("launch", json!({ "program": "glue.obv" }));
+    let why = client.refused("scopes", json!({ "frameId": -1 }));
+    assert_eq!(why, "`frameId` of `scopes` must be a whole number from 0, and is -1");
+    assert_eq!(client.refused("scopes", json!({})), "`scopes` must say `frameId`");
+    client.frame(b"{\"type\": \"request\", \"command\": 3}");
+    let told = client.event("output")["output"].clone();
+    assert_eq!(told, "`command` of a request must be text, and is 3\n");
+    client.frame(b"{\"a\":");
+    let told = client.event("output")["output"].clone();
+    let no_json = "this is no message of the protocol: no JSON from line 1, column 5 on\n";
+    assert_eq!(told, no_json);
+    assert_eq!(client.bye("protocol_words"), Some(0));
+}
+
+#[test]
+fn what_cannot_be_set_is_shown_so_and_said_so() {
+    let mut client = Client::at_entry("bad_pin.obv");
+    let workcell = json!({ "variablesReference": 2 });
+    let shown = client.ok("variables", workcell)["variables"].clone();
+    let found = |shown: &Value, name: &str| {
+        let mut all = shown.as_array().expect("variables").iter();
+        all.find(|it| it["name"] == name).expect("it is there")["presentationHint"].clone()
+    };
+    let read_only = json!({ "attributes": ["readOnly"] });
+    assert_eq!(found(&shown, "force"), read_only, "{shown}");
+    assert_eq!(found(&shown, "input 0"), Value::Null, "{shown}");
+    fn set(variables: u64, name: &str, value: &str) -> Value {
+        json!({ "variablesReference": variables, "name": name, "value": value })
+    }
+    let why = client.refused("setVariable", set(2, "force", "3"));
+    assert_eq!(why, "`force` can only be looked at: variables and inputs can be set");
+    let globals = client.ok("variables", json!({ "variablesReference": 1 }))["variables"].clone();
+    assert_eq!(found(&globals, "next_pin"), Value::Null, "{globals}");
+    let why = client.refused("setVariable", set(1, "next_pin", "true"));
+    assert_eq!(why, "`next_pin`: it cannot be given this value");
+    assert_eq!(client.bye("read_only"), Some(0));
 }

@@ -2,7 +2,7 @@
 
 use crate::client::{Client, PROGRAMS};
 use obverse_dap::console::WORDS;
-use serde_json::json;
+use serde_json::{Value, json};
 use std::io::Write;
 use std::process::{Command, Stdio};
 
@@ -163,4 +163,27 @@ fn what_is_other_is_tried_in_a_what_if() {
     let leave = json!({ "expression": "leave", "context": "repl" });
     client.refused("evaluate", leave);
     assert_eq!(client.bye("console_tries"), Some(0));
+}
+
+#[test]
+fn the_thread_says_how_many_what_ifs_are_within_each_other() {
+    let mut client = Client::at_entry("bad_pin.obv");
+    let name = |client: &mut Client| {
+        client.ok("threads", Value::Null)["threads"][0]["name"].as_str().map(str::to_owned)
+    };
+    for (typed, expected) in [
+        ("what-if", "robot (what-if)"),
+        ("what-if", "robot (what-if 2)"),
+        ("leave", "robot (what-if)"),
+        ("leave", "robot (live)"),
+    ] {
+        client.typed(typed);
+        assert_eq!(name(&mut client).as_deref(), Some(expected), "{typed}");
+    }
+    client.typed("what-if");
+    client.go("next", json!({}));
+    client.typed("goto start");
+    let rewound = name(&mut client).expect("a name");
+    assert!(rewound.starts_with("robot (what-if rewound to"), "{rewound}");
+    assert_eq!(client.bye("nested"), Some(0));
 }

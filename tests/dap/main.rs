@@ -8,6 +8,7 @@ mod bad;
 mod begin;
 mod client;
 mod console;
+mod files;
 mod recovery;
 mod session;
 mod tape;

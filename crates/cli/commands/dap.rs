@@ -7,14 +7,15 @@ use super::Result;
 use crate::load::Program;
 use crate::problem::{Problem, plain};
 use crate::recovering::{self, Kept};
-use crate::{Outcome, after, load, show, taping, write};
+use crate::{Outcome, after, files, load, show, taping, write};
+use obverse_bytecode::SourceFile;
 use obverse_dap::arguments::{self, Argument};
-use obverse_dap::{Attach, Begin, Ended, Launch, Loaded, Wanted, serve};
+use obverse_dap::{Attach, Begin, Ended, Launch, Loaded, OnDisk, Wanted, serve};
 use obverse_debugger::Policy;
 use obverse_recovery::Memory;
 use std::io::{Read, Write};
 use std::net::{Ipv4Addr, TcpListener, TcpStream};
-use std::path::{PathBuf, absolute};
+use std::path::{Path, PathBuf, absolute};
 
 /// Why standard output is left alone, and what a client can ask for.
 fn after_help() -> String {
@@ -97,13 +98,13 @@ fn loaded(wanted: &Wanted) -> std::result::Result<Loaded, String> {
 /// A tape at its end, with the sources of the program that it is said to be of, if it is.
 fn attached(attach: &Attach) -> std::result::Result<Loaded, Problem> {
     let opened = taping::open(&attach.tape)?;
-    let paths = match &attach.program {
+    let files = match &attach.program {
         Some(program) => {
             let program = load::quietly_with(program, &attach.parameters)?;
             opened.check_is_of(&program)?;
-            paths(&program)
+            on_disk(&program)
         }
-        None => opened.paths(),
+        None => on_disk(&opened.program),
     };
     let named = attach.cell.as_deref();
     let start = opened.start(named);
@@ -116,7 +117,7 @@ fn attached(attach: &Attach) -> std::result::Result<Loaded, Problem> {
     let policy = policy(attach.strategy.as_deref(), opened.file.head.seed)?;
     let begin = Begin::Recorded(Box::new(opened.file.recording), start);
     let (program, memory) = (opened.program.verified, Memory::default());
-    Ok(Loaded { program, begin, policy, memory, keep: None, paths, notes })
+    Ok(Loaded { program, begin, policy, memory, keep: None, files, real, notes })
 }
 
 /// What is done about errors.
@@ -129,13 +130,22 @@ fn policy(strategy: Option<&str>, seed: u64) -> std::result::Result<Policy, Prob
     Ok(Policy { strategy: named.transpose()?.unwrap_or(declared.strategy), ..declared })
 }
 
-/// The source files of a program that are on disk.
-fn paths(program: &Program) -> Vec<Option<PathBuf>> {
-    let path = |name: &str| {
-        let path = program.path_of(name);
-        path.is_file().then(|| absolute(&path).unwrap_or(path))
+/// Where the source files of a program are: beside it, wherever this process was started.
+fn on_disk(program: &Program) -> Vec<OnDisk> {
+    let folder = program.path.with_file_name("");
+    let found = |source: &SourceFile| {
+        let path = folder.join(&source.name);
+        let Ok(bytes) = files::read(&path) else { return OnDisk::No };
+        let path = absolute(&path).unwrap_or(path);
+        // Assembly text may name its source without having it.
+        let is_same = source.text.is_empty() || bytes == source.text.as_bytes();
+        if is_same { OnDisk::Same(path) } else { OnDisk::Changed(path) }
     };
-    program.verified.module().sources.iter().map(|file| path(&file.name)).collect()
+    program.verified.module().sources.iter().map(found).collect()
+}
+
+fn real(path: &Path) -> Option<PathBuf> {
+    path.canonicalize().ok()
 }
 
 /// The program and the workcell of a launch.
@@ -152,7 +162,7 @@ fn launched(launch: &Launch) -> std::result::Result<Loaded, Problem> {
     load::machine(&program, &cell, &file)?;
     let policy = policy(launch.strategy.as_deref(), launch.seed)?;
     let kept = Kept::read(launch.memory.as_deref(), &program, &file.name)?;
-    let paths = paths(&program);
+    let files = on_disk(&program);
     let mut notes: Vec<String> = program.source.iter().flat_map(show::diagnostic_lines).collect();
     let after = after::words(launch.after.as_deref());
     let (shown, place) = (launch.program.display(), file.name);
@@ -163,7 +173,8 @@ fn launched(launch: &Launch) -> std::result::Result<Loaded, Problem> {
         policy,
         memory: kept.memory(),
         keep: Some(Box::new(move |memory| kept.keep(memory).map_err(|why| words(&why)))),
-        paths,
+        files,
+        real,
         notes,
     })
 }

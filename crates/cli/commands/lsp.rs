@@ -1,12 +1,13 @@
 //! `obverse lsp`: the language server on standard input and output.
 
 use super::Result;
-use crate::Outcome;
 use crate::files::{self, ProgramFolder};
+use crate::{Outcome, lacking};
 use lsp_server::{Connection, ErrorCode, Message};
+use obverse_bytecode::Module;
 use obverse_compiler::Loader;
 use obverse_dap::frame::{self, Frame, Reader};
-use obverse_lsp::{Disk, Ended, serve};
+use obverse_lsp::{Disk, Ended, Lacking, serve};
 use serde_json::{Value, json};
 use std::fs;
 use std::io::{self, Write};
@@ -136,5 +137,9 @@ impl Disk for Files {
             Some((name, String::from_utf8(bytes.ok()?).ok()?))
         };
         names.into_iter().filter_map(text).collect()
+    }
+
+    fn lacking(&self, path: &str, module: &Module) -> Vec<Lacking> {
+        lacking::in_its_cell(Path::new(path), module)
     }
 }

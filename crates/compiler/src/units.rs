@@ -113,6 +113,11 @@ impl Dimension {
             _ => "one",
         }
     }
+
+    /// The same, each by itself; none where no unit can be named.
+    pub(crate) fn units(self) -> Vec<&'static str> {
+        self.examples().split(" or ").filter(|unit| *unit != "one").collect()
+    }
 }
 
 /// A unit: what it measures, and the value of one, as a quotient, so that tenths of millimetres

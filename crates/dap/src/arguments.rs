@@ -3,7 +3,9 @@
 
 use crate::message::{Request, Wanted};
 use obverse_bytecode::text::nearest;
+use serde::de::DeserializeOwned;
 use serde_json::Value;
+use std::path::Path;
 
 /// What an argument must be.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -16,6 +18,12 @@ pub enum Kind {
     Number,
     /// Whether something holds.
     Flag,
+    /// A whole number of either sign.
+    Signed,
+    /// Anything with parts of its own.
+    Parts,
+    /// Several of these.
+    List,
 }
 
 impl Kind {
@@ -27,6 +35,9 @@ impl Kind {
             Self::Texts => "array",
             Self::Number => "integer",
             Self::Flag => "boolean",
+            Self::Signed => "integer",
+            Self::Parts => "object",
+            Self::List => "array",
         }
     }
 
@@ -36,6 +47,9 @@ impl Kind {
             Self::Texts => "a list of texts",
             Self::Number => "a whole number from 0",
             Self::Flag => "true or false",
+            Self::Signed => "a whole number",
+            Self::Parts => "an object",
+            Self::List => "a list",
         }
     }
 
@@ -45,6 +59,9 @@ impl Kind {
             Self::Texts => value.as_array().is_some_and(|all| all.iter().all(Value::is_string)),
             Self::Number => value.is_u64(),
             Self::Flag => value.is_boolean(),
+            Self::Signed => value.is_i64(),
+            Self::Parts => value.is_object(),
+            Self::List => value.is_array(),
         }
     }
 }
@@ -122,7 +139,7 @@ pub const ATTACH: &[Argument] = &[
 const NO_DEBUG: Argument = argument("noDebug", Kind::Flag, "run without any stop");
 
 /// What editors keep beside it in a configuration, and send along.
-const OF_EDITORS: [&str; 16] = [
+const OF_EDITORS: [&str; 15] = [
     "type",
     "name",
     "request",
@@ -138,8 +155,13 @@ const OF_EDITORS: [&str; 16] = [
     "windows",
     "linux",
     "osx",
-    "cwd",
 ];
+
+/// The folder that relative paths are in, which editors send along for other debuggers.
+const CWD: Argument = argument("cwd", Kind::Text, "the folder that relative paths are in");
+
+/// What of a request is a path.
+const PATHS: [&str; 6] = ["program", "tape", "cell", "after", "memory", "parameters"];
 
 /// What a request wants to debug, and what of it is passed over.
 ///
@@ -150,10 +172,14 @@ pub(crate) fn wanted(request: &Request) -> Result<(Wanted, Vec<String>), String>
     let known = if is_attach { ATTACH } else { LAUNCH };
     let mut given = request.arguments.as_object().cloned().unwrap_or_default();
     given.retain(|_, value| !value.is_null());
-    for argument in known.iter().chain([&NO_DEBUG]) {
+    for argument in known.iter().chain([&NO_DEBUG, &CWD]) {
         check(&request.command, argument, given.get(argument.name))?;
     }
     let names: Vec<String> = given.keys().cloned().collect();
+    if let Some(Value::String(folder)) = given.remove(CWD.name) {
+        let paths = given.iter_mut().filter(|(name, _)| PATHS.contains(&name.as_str()));
+        paths.for_each(|(_, path)| lead_from(&folder, path));
+    }
     let request = Request { arguments: Value::Object(given), ..request.clone() };
     let wanted = match is_attach {
         true => Wanted::Attach(request.given()?),
@@ -165,10 +191,24 @@ pub(crate) fn wanted(request: &Request) -> Result<(Wanted, Vec<String>), String>
     ))
 }
 
+/// A path, or several, as they are from a folder.
+fn lead_from(folder: &str, path: &mut Value) {
+    match path {
+        Value::String(path) => {
+            let led = Path::new(folder).join(&*path);
+            // Both were text, and so is what is made of them.
+            led.to_str().unwrap_or_default().clone_into(path);
+        }
+        Value::Array(all) => all.iter_mut().for_each(|path| lead_from(folder, path)),
+        _ => {}
+    }
+}
+
 /// What is told of an argument that is not understood; nothing of what editors add.
 fn passed_over(command: &str, known: &[Argument], name: &str) -> Option<String> {
     let names = || known.iter().map(|argument| argument.name);
-    let is_private = name.starts_with(['_', '$']) || name == NO_DEBUG.name;
+    let is_own = [NO_DEBUG.name, CWD.name].contains(&name);
+    let is_private = name.starts_with(['_', '$']) || is_own;
     if is_private || names().any(|known| known == name) || OF_EDITORS.contains(&name) {
         return None;
     }
@@ -183,12 +223,93 @@ fn check(command: &str, argument: &Argument, value: Option<&Value>) -> Result<()
     let Argument { name, kind, is_required, about } = argument;
     match value {
         None if *is_required => Err(format!("`{command}` must say `{name}`: {about}")),
-        Some(value) if !kind.is(value) => {
-            let shown: String = value.to_string().chars().take(60).collect();
-            Err(format!("`{name}` of `{command}` must be {}, and is {shown}", kind.words()))
-        }
+        Some(value) if !kind.is(value) => Err(must_be(name, &format!("`{command}`"), *kind, value)),
         _ => Ok(()),
     }
+}
+
+fn must_be(name: &str, of: &str, kind: Kind, value: &Value) -> String {
+    let shown: String = value.to_string().chars().take(60).collect();
+    format!("`{name}` of {of} must be {}, and is {shown}", kind.words())
+}
+
+/// What the parts of all other requests must be: a name means the same in each.
+const PARTS: [(&str, Kind); 38] = [
+    ("seq", Kind::Signed),
+    ("command", Kind::Text),
+    ("linesStartAt1", Kind::Flag),
+    ("columnsStartAt1", Kind::Flag),
+    ("pathFormat", Kind::Text),
+    ("supportsInvalidatedEvent", Kind::Flag),
+    ("source", Kind::Parts),
+    ("name", Kind::Text),
+    ("path", Kind::Text),
+    ("sourceReference", Kind::Number),
+    ("breakpoints", Kind::List),
+    ("lines", Kind::List),
+    ("line", Kind::Number),
+    ("column", Kind::Number),
+    ("condition", Kind::Text),
+    ("hitCondition", Kind::Text),
+    ("logMessage", Kind::Text),
+    ("instructionReference", Kind::Text),
+    ("dataId", Kind::Text),
+    ("accessType", Kind::Text),
+    ("filters", Kind::Texts),
+    ("filterOptions", Kind::List),
+    ("filterId", Kind::Text),
+    ("threadId", Kind::Number),
+    ("frameId", Kind::Number),
+    ("startFrame", Kind::Number),
+    ("levels", Kind::Number),
+    ("variablesReference", Kind::Number),
+    ("value", Kind::Text),
+    ("expression", Kind::Text),
+    ("context", Kind::Text),
+    ("text", Kind::Text),
+    ("granularity", Kind::Text),
+    ("targetId", Kind::Number),
+    ("memoryReference", Kind::Text),
+    ("offset", Kind::Signed),
+    ("instructionOffset", Kind::Signed),
+    ("instructionCount", Kind::Number),
+];
+
+/// What something that a client sends says, as what it must be.
+///
+/// # Errors
+/// Which part of it is missing or is something else than it must be.
+pub(crate) fn given<T: DeserializeOwned>(of: &str, value: &Value) -> Result<T, String> {
+    let whole = match value {
+        Value::Null => Value::Object(serde_json::Map::new()),
+        Value::Object(_) => value.clone(),
+        _ => return Err(format!("what {of} is given must be an object")),
+    };
+    let wrong = wrong_part(of, &whole);
+    serde_json::from_value(whole).map_err(|error| {
+        let error = error.to_string();
+        let missing = error.strip_prefix("missing field `").and_then(|it| it.split('`').next());
+        let missing = missing.map(|name| format!("{of} must say `{name}`"));
+        wrong.or(missing).unwrap_or_else(|| format!("{of} is given what it cannot be"))
+    })
+}
+
+/// What is wrong with the first part, of itself or within another, that is not what it must be.
+fn wrong_part(of: &str, whole: &Value) -> Option<String> {
+    let parts = whole.as_object()?;
+    let wrong = |(name, value): (&String, &Value)| {
+        let (_, kind) = PARTS.iter().find(|(known, _)| known == name)?;
+        match kind {
+            _ if value.is_null() => None,
+            Kind::Parts if value.is_object() => wrong_part(of, value),
+            Kind::List if value.is_array() => {
+                value.as_array()?.iter().find_map(|part| wrong_part(of, part))
+            }
+            kind if !kind.is(value) => Some(must_be(name, of, *kind, value)),
+            _ => None,
+        }
+    };
+    parts.iter().find_map(wrong)
 }
 
 #[cfg(test)]
@@ -220,6 +341,39 @@ mod tests {
             given[name] = json!({ "order": 1 });
         }
         assert_eq!(of("launch", given).expect("it is understood").1, Vec::<String>::new());
+    }
+
+    #[test]
+    fn relative_paths_are_in_the_folder_that_is_named() {
+        let given = json!({
+            "program": "a.obv", "cell": "/b.toml", "parameters": ["c.toml"], "cwd": "/x/y",
+        });
+        let (Wanted::Launch(launch), told) = of("launch", given).expect("it is understood") else {
+            panic!("it is a launch");
+        };
+        assert_eq!((launch.program, told.len()), ("/x/y/a.obv".into(), 0));
+        assert_eq!(
+            (launch.cell, launch.parameters),
+            (Some("/b.toml".into()), vec!["/x/y/c.toml".into()])
+        );
+        assert!(of("launch", json!({ "program": "a", "cwd": 3 })).is_err());
+    }
+
+    #[test]
+    fn parts_of_requests_are_refused_by_name() {
+        use crate::message::{Asked, Evaluate, SetBreakpoints};
+        fn why<T: DeserializeOwned>(value: Value) -> String {
+            given::<T>("`it`", &value).map(|_| ()).expect_err("it is wrong")
+        }
+        let of_source = json!({ "source": { "path": 3 }, "breakpoints": [] });
+        let told = why::<SetBreakpoints>(of_source);
+        assert_eq!(told, "`path` of `it` must be text, and is 3");
+        assert_eq!(why::<SetBreakpoints>(json!({})), "`it` must say `source`");
+        assert_eq!(why::<Evaluate>(json!([1])), "what `it` is given must be an object");
+        let told = why::<Asked>(json!({ "line": "x", "condition": null }));
+        assert_eq!(told, "`line` of `it` must be a whole number from 0, and is \"x\"");
+        let lines = json!({ "source": {}, "lines": [true] });
+        assert_eq!(why::<SetBreakpoints>(lines), "`it` is given what it cannot be");
     }
 
     #[test]

@@ -29,6 +29,10 @@ impl Debuggee<'_, '_, '_> {
     ) -> Result<Known, String> {
         self.refuse_moving()?;
         let module = self.session.module();
+        if !shown::can_be_set(subject) {
+            let name = subject.name(module);
+            return Err(format!("`{name}` can only be looked at: variables and inputs can be set"));
+        }
         let expression =
             Expression::parse(module, function, text).map_err(|error| error.to_string())?;
         let value = self.session.look(|look| expression.value(look));

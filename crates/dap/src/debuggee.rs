@@ -11,7 +11,7 @@ use crate::message::{
 };
 use crate::motion::{Going, is_end};
 use crate::places;
-use crate::points::{Group, Points, data};
+use crate::points::{Group, Points, data, none_set};
 use crate::server::{Ended, Loaded, Server};
 use crate::story::{Story, Told};
 use crate::words::{self, Words};
@@ -311,8 +311,13 @@ impl<'a, 's, 'p> Debuggee<'a, 's, 'p> {
 
     fn set_lines(&mut self, request: &Request) -> Answer {
         let asked: SetBreakpoints = request.given()?;
-        let file = places::file(self.loaded, &asked.source)?;
-        self.set_group(&Group::Lines(file.to_owned()), asked.breakpoints)
+        // Older clients say lines, and nothing else of them.
+        let lines = || asked.lines.iter().map(|line| json!({ "line": line })).collect();
+        let points = asked.breakpoints.unwrap_or_else(lines);
+        match places::file(self.loaded, &asked.source) {
+            Ok(file) => self.set_group(&Group::Lines(file.to_owned()), points),
+            Err(why) => Ok(none_set(points.len(), &why)),
+        }
     }
 
     fn set(&mut self, request: &Request, group: &Group) -> Answer {
@@ -321,7 +326,7 @@ impl<'a, 's, 'p> Debuggee<'a, 's, 'p> {
 
     fn set_group(&mut self, group: &Group, asked: Vec<Value>) -> Answer {
         if self.launch.no_debug {
-            return Err(NO_STOPS.to_owned());
+            return Ok(none_set(asked.len(), NO_STOPS));
         }
         let about = (self.loaded, &self.server.client);
         self.points.set(&mut self.session, about, group, asked)
@@ -332,7 +337,11 @@ impl<'a, 's, 'p> Debuggee<'a, 's, 'p> {
         let plain = asked.filters.into_iter();
         let plain = plain.map(|filter_id| FilterOption { filter_id, condition: None });
         let all = plain.chain(asked.filter_options).collect();
-        let all = if self.launch.no_debug { Vec::new() } else { all };
+        if self.launch.no_debug {
+            let count = Vec::len(&all);
+            self.points.set_errors(&mut self.session, Vec::new());
+            return Ok(none_set(count, NO_STOPS));
+        }
         Ok(self.points.set_errors(&mut self.session, all))
     }
 
@@ -345,7 +354,7 @@ impl<'a, 's, 'p> Debuggee<'a, 's, 'p> {
             }
             None => self.function_of(asked.frame_id),
         };
-        Ok(data(module, function, &asked.name))
+        Ok(data(module, &self.session.recording().facts, function, &asked.name))
     }
 
     fn exception_info(&self) -> Answer {

@@ -42,4 +42,4 @@ mod walking;
 mod words;
 
 pub use message::{Attach, Launch, Wanted};
-pub use server::{Begin, Ended, Keep, Loaded, serve};
+pub use server::{Begin, Ended, Keep, Loaded, OnDisk, serve};

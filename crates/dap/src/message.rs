@@ -2,6 +2,7 @@
 //!
 //! Whatever else a client sends along is passed over, as the protocol wants it.
 
+use crate::arguments::given;
 use serde::Deserialize;
 use serde::de::DeserializeOwned;
 use serde_json::Value;
@@ -25,20 +26,8 @@ impl Request {
     /// # Errors
     /// What is wrong with it.
     pub fn given<T: DeserializeOwned>(&self) -> Result<T, String> {
-        let given = match &self.arguments {
-            Value::Null => Value::Object(serde_json::Map::new()),
-            given => given.clone(),
-        };
-        serde_json::from_value(given)
-            .map_err(|error| format!("`{}` is given something else: {error}", self.command))
+        given(&format!("`{}`", self.command), &self.arguments)
     }
-}
-
-/// A message that is no request.
-#[derive(Deserialize)]
-struct Kind {
-    #[serde(rename = "type")]
-    kind: String,
 }
 
 /// The request that bytes are.
@@ -46,12 +35,15 @@ struct Kind {
 /// # Errors
 /// Why they are none.
 pub fn request(bytes: &[u8]) -> Result<Request, String> {
-    let kind: Kind = serde_json::from_slice(bytes)
-        .map_err(|error| format!("this is no message of the protocol: {error}"))?;
-    if kind.kind != "request" {
-        return Err(format!("a client sends requests, and this is of type `{}`", kind.kind));
+    let message: Value = serde_json::from_slice(bytes).map_err(|error| {
+        let (line, column) = (error.line(), error.column());
+        format!("this is no message of the protocol: no JSON from line {line}, column {column} on")
+    })?;
+    match message.get("type").and_then(Value::as_str) {
+        Some("request") => given("a request", &message),
+        Some(kind) => Err(format!("a client sends requests, and this is of type `{kind}`")),
+        None => Err("this is no message of the protocol: it has no `type`".to_owned()),
     }
-    serde_json::from_slice(bytes).map_err(|error| format!("this is no request: {error}"))
 }
 
 /// What `initialize` is given.
@@ -62,16 +54,32 @@ pub(crate) struct Client {
     pub(crate) lines_from_1: bool,
     #[serde(rename = "columnsStartAt1")]
     pub(crate) columns_from_1: bool,
+    pub(crate) path_format: Option<String>,
     pub(crate) supports_invalidated_event: bool,
 }
 
 impl Default for Client {
     fn default() -> Self {
-        Self { lines_from_1: true, columns_from_1: true, supports_invalidated_event: false }
+        Self {
+            lines_from_1: true,
+            columns_from_1: true,
+            path_format: None,
+            supports_invalidated_event: false,
+        }
     }
 }
 
 impl Client {
+    /// That it names files as they are named here.
+    pub(crate) fn check(self) -> Result<Self, String> {
+        match self.path_format.as_deref() {
+            None | Some("path") => Ok(self),
+            Some(other) => {
+                Err(format!("`pathFormat` must be `path`, and is `{other}`: files have paths here"))
+            }
+        }
+    }
+
     /// A line from 1, as the client counts.
     pub(crate) fn line(&self, line: usize) -> usize {
         line - usize::from(!self.lines_from_1 && line > 0)
@@ -165,8 +173,10 @@ pub(crate) struct Source {
 #[derive(Deserialize)]
 pub(crate) struct SetBreakpoints {
     pub(crate) source: Source,
+    pub(crate) breakpoints: Option<Vec<Value>>,
+    /// In place of breakpoints, from older clients.
     #[serde(default)]
-    pub(crate) breakpoints: Vec<Value>,
+    pub(crate) lines: Vec<usize>,
 }
 
 /// What breakpoints of any kind are given without a source.

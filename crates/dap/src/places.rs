@@ -1,10 +1,11 @@
 //! Source files and instructions, as a client names them.
 //!
 //! An instruction is called by its number, as everywhere. A file that is in no folder, as those of
-//! the library, is asked for by a number too: its place in the module, from 1.
+//! the library, is asked for by a number too: its place in the module, from 1. So is one that has
+//! changed since.
 
 use crate::message::{Client, Disassemble, Source};
-use crate::server::Loaded;
+use crate::server::{Loaded, OnDisk};
 use obverse_bytecode::Module;
 use obverse_bytecode::text::instruction;
 use obverse_debugger::SourcePlace;
@@ -14,13 +15,17 @@ use std::path::Path;
 /// The most instructions that are shown at once.
 const MAX_SHOWN: usize = 4096;
 
-/// A source file as a client is told of it.
+/// A source file as a client is told of it: by its path only if the file there is what runs.
 pub(crate) fn source(loaded: &Loaded, file: &str) -> Value {
     let sources = &loaded.program.module().sources;
     let index = sources.iter().position(|source| source.name == file);
-    match index.and_then(|index| loaded.paths.get(index)?.as_ref()) {
-        Some(path) => json!({ "name": file, "path": path }),
-        None => json!({ "name": file, "sourceReference": index.map_or(0, |index| index + 1) }),
+    let number = index.map_or(0, |index| index + 1);
+    match index.and_then(|index| loaded.files.get(index)) {
+        Some(OnDisk::Same(path)) => json!({ "name": file, "path": path }),
+        Some(OnDisk::Changed(_)) => {
+            json!({ "name": file, "sourceReference": number, "origin": "as the program has it" })
+        }
+        _ => json!({ "name": file, "sourceReference": number }),
     }
 }
 
@@ -32,25 +37,53 @@ pub(crate) fn sources(loaded: &Loaded) -> Value {
 }
 
 /// The file of the program that a client means.
+///
+/// # Errors
+/// It is none of the program's, or it is not what the program was made of.
 pub(crate) fn file<'l>(loaded: &'l Loaded, source: &Source) -> Result<&'l str, String> {
     let sources = &loaded.program.module().sources;
     let reference = source.source_reference.unwrap_or(0);
     let by_number = usize::try_from(reference).ok().and_then(|it| it.checked_sub(1));
     let path = source.path.as_deref().or(source.name.as_deref()).unwrap_or("").replace('\\', "/");
     let path = Path::new(&path);
-    let by_path = || {
-        let is_it = |known: &Option<std::path::PathBuf>| known.as_deref() == Some(path);
-        loaded.paths.iter().position(is_it)
+    let by_path = || loaded.files.iter().position(|known| is_same(loaded, known, path));
+    // A file elsewhere may have the same name: it is meant only where there is no file, as where a
+    // tape was made on another machine, or where a client says no more than a name.
+    let by_name = || {
+        let is_open = |index: usize| {
+            source.path.is_none() || matches!(loaded.files.get(index), None | Some(OnDisk::No))
+        };
+        let mut all = sources.iter().enumerate();
+        let found = all.find(|(index, file)| is_open(*index) && path.ends_with(&file.name));
+        found.map(|(index, _)| index)
     };
-    // A client may name a folder otherwise, by way of a link for one.
-    let by_name = || sources.iter().position(|file| path.ends_with(&file.name));
     let index = by_number.or_else(by_path).or_else(by_name);
-    let found = index.and_then(|index| sources.get(index));
-    found.map(|file| file.name.as_str()).ok_or_else(|| {
-        let known: Vec<&str> = sources.iter().map(|file| file.name.as_str()).collect();
-        let known = known.join(", ");
-        format!("`{}` is no file of the program; it is made of {known}", path.display())
-    })
+    let found = index.and_then(|index| Some((sources.get(index)?, loaded.files.get(index))));
+    match found {
+        Some((_, Some(OnDisk::Changed(_)))) if by_number.is_none() => Err(format!(
+            "`{}` has changed since the program was made of it: its text as it was then is among \
+             the loaded sources",
+            path.display()
+        )),
+        Some((file, _)) => Ok(&file.name),
+        None => Err(no_file(loaded, path)),
+    }
+}
+
+/// Whether a file of the program is the one that a client calls so, by way of a link for one.
+fn is_same(loaded: &Loaded, known: &OnDisk, path: &Path) -> bool {
+    let Some(known) = known.path() else { return false };
+    let is_real = || (loaded.real)(known).is_some_and(|it| (loaded.real)(path) == Some(it));
+    known == path || is_real()
+}
+
+fn no_file(loaded: &Loaded, path: &Path) -> String {
+    let sources = loaded.program.module().sources.iter().zip(&loaded.files);
+    let known = sources.map(|(source, known)| {
+        known.path().map_or_else(|| source.name.clone(), |path| path.display().to_string())
+    });
+    let known = known.collect::<Vec<_>>().join(", ");
+    format!("`{}` is no file of the program; it is made of {known}", path.display())
 }
 
 /// The text of a file that is in no folder.

@@ -4,12 +4,16 @@
 //! A client always sends a whole group. What it sends again as it was stays, with how often it has
 //! been come to.
 
+use crate::arguments::given;
 use crate::filters::{self, Filter};
 use crate::message::{Asked, Client, FilterOption};
 use crate::places;
 use crate::server::Loaded;
 use obverse_bytecode::Module;
-use obverse_debugger::{Breakpoint, Counts, Expression, Halt, Piece, Places, Session};
+use obverse_debugger::recording::Facts;
+use obverse_debugger::{
+    Breakpoint, ConditionError, Counts, Expression, Halt, Piece, Places, Session,
+};
 use obverse_sim::Sim;
 use obverse_vm::Stop;
 use serde_json::{Value, json};
@@ -17,6 +21,7 @@ use std::collections::BTreeSet;
 
 /// The most breakpoints of a group.
 const MAX_POINTS: usize = 1000;
+
 /// What a client sets at once.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(crate) enum Group {
@@ -53,6 +58,23 @@ struct Point {
 pub(crate) struct Points {
     points: Vec<Point>,
     filters: Vec<Filter>,
+}
+
+/// What is known of a program before it runs, by which a breakpoint can be seen to be none.
+#[derive(Clone, Copy)]
+struct Known<'k> {
+    module: &'k Module,
+    facts: &'k Facts,
+}
+
+impl Known<'_> {
+    /// An expression, if the workcell has what it asks for.
+    fn checked(
+        self,
+        parsed: Result<Expression, ConditionError>,
+    ) -> Result<Expression, ConditionError> {
+        parsed.and_then(|it| it.check_lines(self.facts).map(|()| it))
+    }
 }
 
 /// A breakpoint, and what a client is told of it.
@@ -146,6 +168,15 @@ impl Points {
     }
 }
 
+/// What is told of so many that cannot be set for one reason.
+pub(crate) fn none_set(count: usize, why: &str) -> Value {
+    json!({ "breakpoints": vec![refused(why); count] })
+}
+
+fn refused(why: &str) -> Value {
+    json!({ "verified": false, "message": why, "reason": "failed" })
+}
+
 fn drop_all(session: &mut Session<'_, Sim>, points: &[Point]) {
     for id in points.iter().filter_map(|point| point.id) {
         // It is there, and were it not, nothing would be left to drop.
@@ -159,14 +190,12 @@ fn make(
     group: &Group,
     asked: Value,
 ) -> Point {
-    let module = session.module();
-    let given = serde_json::from_value::<Asked>(asked.clone())
-        .map_err(|error| format!("this is no breakpoint: {error}"));
-    let made = given.and_then(|given| match group {
-        Group::Lines(file) => of_line(module, (loaded, client), file, &given),
-        Group::Functions => of_function(module, &given),
-        Group::Instructions => of_instruction(module, &given),
-        Group::Data | Group::Errors => of_data(module, &given),
+    let known = Known { module: session.module(), facts: &session.recording().facts };
+    let made = given::<Asked>("a breakpoint", &asked).and_then(|given| match group {
+        Group::Lines(file) => of_line(known, (loaded, client), file, &given),
+        Group::Functions => of_function(known, &given),
+        Group::Instructions => of_instruction(known, &given),
+        Group::Data | Group::Errors => of_data(known, &given),
     });
     let group = group.clone();
     match made {
@@ -176,71 +205,70 @@ fn make(
             answer["verified"] = json!(true);
             Point { group, asked, id: Some(id), answer }
         }
-        Err(why) => {
-            let answer = json!({ "verified": false, "message": why, "reason": "failed" });
-            Point { group, asked, id: None, answer }
-        }
+        Err(why) => Point { group, asked, id: None, answer: refused(&why) },
     }
 }
 
 fn of_line(
-    module: &Module,
+    known: Known<'_>,
     (loaded, client): (&Loaded, &Client),
     file: &str,
     given: &Asked,
 ) -> Result<Made, String> {
     let asked = given.line.ok_or("it must say its line")?;
     let line = client.line_of(asked);
-    let places = Places::of_line(module, Some(file), line).map_err(|error| error.to_string())?;
+    let places =
+        Places::of_line(known.module, Some(file), line).map_err(|error| error.to_string())?;
     let found = places.line.unwrap_or(line);
     let mut answer = json!({ "line": client.line(found), "source": places::source(loaded, file) });
     if found != line {
         answer["message"] = json!(format!("there is no code at line {line}; the next is {found}"));
     }
-    Ok((at(module, places, given)?, answer))
+    Ok((at(known, places, given)?, answer))
 }
 
-fn of_function(module: &Module, given: &Asked) -> Result<Made, String> {
+fn of_function(known: Known<'_>, given: &Asked) -> Result<Made, String> {
     let name = given.name.as_deref().ok_or("it must say a name")?;
-    let places = Places::of_name(module, name.trim()).map_err(|error| error.to_string())?;
-    Ok((at(module, places, given)?, json!({})))
+    let places = Places::of_name(known.module, name.trim()).map_err(|error| error.to_string())?;
+    Ok((at(known, places, given)?, json!({})))
 }
 
-fn of_instruction(module: &Module, given: &Asked) -> Result<Made, String> {
+fn of_instruction(known: Known<'_>, given: &Asked) -> Result<Made, String> {
     let reference = given.instruction_reference.as_deref().ok_or("it must say an instruction")?;
     let asked = places::address(reference, given.offset)?;
     let pc = u32::try_from(asked).map_err(|_| format!("there is no instruction {asked}"))?;
-    let places = Places::of_instruction(module, pc).map_err(|error| error.to_string())?;
+    let places = Places::of_instruction(known.module, pc).map_err(|error| error.to_string())?;
     let found = places.pcs.first().copied().unwrap_or(pc);
     let mut answer = json!({ "instructionReference": found.to_string() });
     if found != pc {
         let why = format!("no run can stop before instruction {pc}; the next is {found}");
         answer["message"] = json!(why);
     }
-    Ok((at(module, places, given)?, answer))
+    Ok((at(known, places, given)?, answer))
 }
 
-fn at(module: &Module, places: Places, given: &Asked) -> Result<Breakpoint, String> {
-    let first = places.pcs.first().and_then(|pc| module.function_at(*pc));
-    qualified(module, first.unwrap_or(0), Breakpoint::at(places), given)
+fn at(known: Known<'_>, places: Places, given: &Asked) -> Result<Breakpoint, String> {
+    let first = places.pcs.first().and_then(|pc| known.module.function_at(*pc));
+    qualified(known, first.unwrap_or(0), Breakpoint::at(places), given)
 }
 
-fn of_data(module: &Module, given: &Asked) -> Result<Made, String> {
+fn of_data(known: Known<'_>, given: &Asked) -> Result<Made, String> {
     let id = given.data_id.as_deref().ok_or("it must say what is watched")?;
     if let Some(access) = given.access_type.as_deref().filter(|access| *access != "write") {
         return Err(format!("a run stops where it is changed, and not for `{access}`"));
     }
     let (function, text) = id.split_once(':').unwrap_or(("0", id));
     let function = function.parse().map_err(|_| format!("`{id}` is nothing that is watched"))?;
-    let expression =
-        Expression::parse(module, function, text).map_err(|error| error.to_string())?;
+    let parsed = Expression::parse(known.module, function, text);
+    let expression = known.checked(parsed).map_err(|error| error.to_string())?;
     let breakpoint = Breakpoint::on_change(expression);
-    Ok((qualified(module, function, breakpoint, given)?, json!({})))
+    Ok((qualified(known, function, breakpoint, given)?, json!({})))
 }
 
 /// What is watched, by which a breakpoint can be set on it, and what a person calls it.
-pub(crate) fn data(module: &Module, function: usize, text: &str) -> Value {
-    match Expression::parse(module, function, text) {
+pub(crate) fn data(module: &Module, facts: &Facts, function: usize, text: &str) -> Value {
+    let parsed = Expression::parse(module, function, text);
+    match (Known { module, facts }).checked(parsed) {
         Ok(expression) if !expression.subjects().is_empty() => json!({
             "dataId": format!("{function}:{text}"),
             "description": text,
@@ -254,19 +282,19 @@ pub(crate) fn data(module: &Module, function: usize, text: &str) -> Value {
 
 /// A breakpoint with when it stops, and what it tells in place of a stop.
 fn qualified(
-    module: &Module,
+    known: Known<'_>,
     function: usize,
     breakpoint: Breakpoint,
     given: &Asked,
 ) -> Result<Breakpoint, String> {
     let text = |text: &Option<String>| text.clone().filter(|text| !text.trim().is_empty());
     let condition = text(&given.condition).map(|text| {
-        let condition = Expression::condition(module, function, &text);
-        condition.map_err(|error| format!("condition: {error}"))
+        let condition = Expression::condition(known.module, function, &text);
+        known.checked(condition).map_err(|error| format!("condition: {error}"))
     });
     let hits = text(&given.hit_condition).map(|text| hits(&text)).transpose()?;
     let (ignored, counts) = hits.unwrap_or_default();
-    let log = text(&given.log_message).map(|text| pieces(module, function, &text));
+    let log = text(&given.log_message).map(|text| pieces(known, function, &text));
     Ok(Breakpoint {
         condition: condition.transpose()?,
         ignored,
@@ -296,13 +324,14 @@ fn hits(text: &str) -> Result<(u64, Counts), String> {
 }
 
 /// What a log point tells: text, and between braces what is worked out.
-fn pieces(module: &Module, function: usize, text: &str) -> Result<Vec<Piece>, String> {
+fn pieces(known: Known<'_>, function: usize, text: &str) -> Result<Vec<Piece>, String> {
     let mut pieces = Vec::new();
     let mut rest = text;
     while let Some((before, behind)) = rest.split_once('{') {
         let (inner, after) = behind.split_once('}').ok_or("log message: a `}` is missing")?;
-        let value = Expression::parse(module, function, inner);
-        let value = value.map_err(|error| format!("log message: `{inner}`: {error}"))?;
+        let value = Expression::parse(known.module, function, inner);
+        let value =
+            known.checked(value).map_err(|error| format!("log message: `{inner}`: {error}"))?;
         pieces.extend((!before.is_empty()).then(|| Piece::Text(before.to_owned())));
         pieces.push(Piece::Value(value));
         rest = after;
@@ -331,14 +360,17 @@ mod tests {
 
     #[test]
     fn log_messages_are_text_and_values() {
-        let module = Module::default();
-        let pieces = pieces(&module, 0, "force {force} N").expect("it is well formed");
+        let (module, facts) = (Module::default(), Facts { outputs: 8, ..Facts::default() });
+        let known = Known { module: &module, facts: &facts };
+        let pieces = pieces(known, 0, "force {force} N").expect("it is well formed");
         assert!(matches!(
             &pieces[..],
             [Piece::Text(before), Piece::Value(_), Piece::Text(behind)]
                 if before == "force " && behind == " N"
         ));
-        assert!(super::pieces(&module, 0, "force {force").is_err());
-        assert!(super::pieces(&module, 0, "{no_such_thing}").is_err());
+        for wrong in ["force {force", "{no_such_thing}", "{output 8}"] {
+            assert!(super::pieces(known, 0, wrong).is_err(), "{wrong}");
+        }
+        assert!(super::pieces(known, 0, "{output 7}").is_ok());
     }
 }

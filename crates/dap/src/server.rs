@@ -12,7 +12,7 @@ use obverse_recovery::Memory;
 use obverse_sim::Sim;
 use serde_json::{Value, json};
 use std::io::{Read, Write};
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 /// Where a session begins.
 pub enum Begin {
@@ -24,6 +24,26 @@ pub enum Begin {
 
 /// Keeps what was learned of errors, or says why it cannot.
 pub type Keep = Box<dyn Fn(&Memory) -> Result<(), String>>;
+
+/// Where a source file of a module is.
+pub enum OnDisk {
+    /// In no folder: the module alone has its text.
+    No,
+    /// In this file, which has the text that the module has.
+    Same(PathBuf),
+    /// In this file, which has another text now.
+    Changed(PathBuf),
+}
+
+impl OnDisk {
+    /// The file, whatever its text is.
+    pub(crate) fn path(&self) -> Option<&Path> {
+        match self {
+            Self::No => None,
+            Self::Same(path) | Self::Changed(path) => Some(path),
+        }
+    }
+}
 
 /// A program that may be run, or was.
 pub struct Loaded {
@@ -37,8 +57,10 @@ pub struct Loaded {
     pub memory: Memory,
     /// What is done with what is learned, at the end.
     pub keep: Option<Keep>,
-    /// The path of each source file of the module; none of one that is in no folder.
-    pub paths: Vec<Option<PathBuf>>,
+    /// Where each source file of the module is.
+    pub files: Vec<OnDisk>,
+    /// The path that a path leads to when all links are followed; none if nothing is there.
+    pub real: fn(&Path) -> Option<PathBuf>,
     /// What the user is to be told about it, warnings for one.
     pub notes: Vec<String>,
 }
@@ -129,7 +151,7 @@ impl Server<'_> {
                 "initialize" if is_initialized => {
                     self.out.refuse(&request, "it is initialized already");
                 }
-                "initialize" => match request.given() {
+                "initialize" => match request.given().and_then(Client::check) {
                     Ok(client) => {
                         self.client = client;
                         is_initialized = true;

@@ -155,10 +155,18 @@ fn variable(variable: &Variable) -> Value {
         "type": type_name(&variable.value),
         "variablesReference": if is_arm { JOINTS } else { 0 },
     });
+    if !variable.subject.as_ref().is_some_and(can_be_set) {
+        shown["presentationHint"] = json!({ "attributes": ["readOnly"] });
+    }
     if variable.subject.is_some() {
         shown["evaluateName"] = json!(variable.name);
     }
     shown
+}
+
+/// Whether a person can give it another value.
+pub(crate) fn can_be_set(subject: &Subject) -> bool {
+    matches!(subject, Subject::Input(_) | Subject::Global(_) | Subject::Local(..))
 }
 
 /// What a value is, in a word.

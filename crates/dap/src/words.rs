@@ -132,13 +132,19 @@ fn trapped(module: &Module, trap: &Trap) -> String {
     format!("{}: {}", line(module, trap.pc), own.unwrap_or_else(|| trap.kind.to_string()))
 }
 
-/// What is shown, in a few words.
+/// What is shown, in a few words: a what-if within another by how many they are.
 pub(crate) fn mode(session: &Session<'_, Sim>) -> String {
+    let tried = match session.tries() {
+        0 => String::new(),
+        1 => Mode::WhatIf.name().to_owned(),
+        tries => format!("{} {tries}", Mode::WhatIf.name()),
+    };
     match session.mode() {
-        Mode::Live => "live".to_owned(),
-        Mode::WhatIf => "what-if".to_owned(),
+        Mode::Live => Mode::Live.name().to_owned(),
+        Mode::WhatIf => tried,
         Mode::Rewound => {
-            format!("rewound to {} of {}", session.moment(), session.recording().end)
+            let rewound = format!("rewound to {} of {}", session.moment(), session.recording().end);
+            format!("{tried} {rewound}").trim_start().to_owned()
         }
     }
 }

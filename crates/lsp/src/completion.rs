@@ -7,6 +7,7 @@ use lsp_types::{CompletionItem, CompletionItemKind, CompletionList, Position, Ur
 use obverse_compiler::symbols::{self, Symbol, SymbolKind};
 use obverse_syntax::UNITS;
 use obverse_syntax::codes::Code;
+use obverse_syntax::diagnostic::Diagnostic;
 use obverse_syntax::expected::{Expected, expected_after};
 use obverse_syntax::highlight::PieceKind;
 
@@ -81,8 +82,8 @@ impl<'w> Writing<'w> {
         let is_number = last == Some(PieceKind::Number) || self.ago(1) == "]";
         let mut items = Vec::new();
         if is_number && self.is_same_line() {
-            let units = UNITS.iter().map(|unit| item("0", unit, CompletionItemKind::Unit, "unit"));
-            items.extend(units);
+            let units = self.units().into_iter();
+            items.extend(units.map(|unit| item("0", unit, CompletionItemKind::Unit, "unit")));
         }
         if self.ago(1) == "." {
             return self.keyframes();
@@ -92,6 +93,22 @@ impl<'w> Writing<'w> {
         items.sort_by(|a, b| a.sort_text.cmp(&b.sort_text));
         items.dedup_by(|a, b| a.label == b.label);
         items
+    }
+
+    /// The units that a number may lack, where it is known what it measures; else all.
+    fn units(&self) -> Vec<&str> {
+        let program = &self.file.program;
+        let end = self.before.pieces.last().map_or(0, |piece| piece.span.end);
+        let end = program.start(self.file.file) + end;
+        let lacks = |one: &&Diagnostic| {
+            one.code == Code::MissingUnit && one.primary.span.end == end && !one.choices.is_empty()
+        };
+        match program.compiled.diagnostics.iter().find(lacks) {
+            Some(one) => {
+                one.choices.iter().filter_map(|it| it.text.split_whitespace().last()).collect()
+            }
+            None => UNITS.to_vec(),
+        }
     }
 
     /// The words of the language. On the line of a statement that could go on, those that begin the

@@ -1,6 +1,7 @@
 //! Diagnostics and what mends them, as editors take them. It knows how they are shown, and none of
 //! them.
 
+use crate::disk::Lacking;
 use crate::position::{Lines, boundary};
 use crate::program::{Program, is_of_library};
 use crate::workspace::Workspace;
@@ -9,7 +10,7 @@ use lsp_types::{
     DiagnosticTag, Location, Range, TextEdit, Uri, WorkspaceEdit,
 };
 use obverse_syntax::codes::Code;
-use obverse_syntax::diagnostic::{self, Severity};
+use obverse_syntax::diagnostic::{self, Severity, Suggestion};
 use std::collections::{BTreeMap, HashMap};
 
 impl Workspace {
@@ -51,6 +52,13 @@ impl Workspace {
                 of_file.push(shown);
             }
         }
+        for lacking in self.lacking(program) {
+            let Some((key, shown)) = of_workcell(program, &lacking) else { continue };
+            let of_file = found.entry(key).or_default();
+            if !of_file.contains(&shown) {
+                of_file.push(shown);
+            }
+        }
     }
 
     fn shown(&self, program: &Program, one: &diagnostic::Diagnostic, range: Range) -> Diagnostic {
@@ -83,31 +91,47 @@ impl Workspace {
         for file in self.files(uri) {
             let program = &file.program;
             for one in &program.compiled.diagnostics {
-                let Some(suggestion) = &one.suggestion else { continue };
                 let at = program.range(file.file, one.primary.span);
                 let Some(at) = at.filter(|at| at.start <= range.end && range.start <= at.end)
                 else {
                     continue;
                 };
-                let Some((key, place)) = program.place(suggestion.span) else { continue };
-                if is_of_library(&key) {
-                    continue;
-                }
-                let edit = TextEdit::new(place, suggestion.text.clone());
-                let action = CodeAction {
-                    title: one.help.clone().unwrap_or_else(|| one.message.clone()),
-                    kind: Some(CodeActionKind::QuickFix),
-                    diagnostics: Some(vec![self.shown(program, one, at)]),
-                    is_preferred: Some(true),
-                    edit: Some(changes([(self.uri(&key), edit)])),
-                    ..CodeAction::default()
-                };
-                if !actions.contains(&action) {
-                    actions.push(action);
+                for action in self.mending(program, one, at) {
+                    if !actions.contains(&action) {
+                        actions.push(action);
+                    }
                 }
             }
         }
         actions
+    }
+
+    /// The changes that mend one thing: the one that does, or those of which a person chooses one.
+    fn mending(
+        &self,
+        program: &Program,
+        one: &diagnostic::Diagnostic,
+        at: Range,
+    ) -> Vec<CodeAction> {
+        let the_one = one.suggestion.iter().map(|change| {
+            let title = one.help.clone().unwrap_or_else(|| one.message.clone());
+            (title, change, Some(true))
+        });
+        let choices = one.choices.iter();
+        let choices = choices.map(|one| (format!("write `{}`", one.text.trim()), one, None));
+        let action = |(title, change, is_preferred): (String, &Suggestion, Option<bool>)| {
+            let (key, place) = program.place(change.span)?;
+            let edit = TextEdit::new(place, change.text.clone());
+            (!is_of_library(&key)).then(|| CodeAction {
+                title,
+                kind: Some(CodeActionKind::QuickFix),
+                diagnostics: Some(vec![self.shown(program, one, at)]),
+                is_preferred,
+                edit: Some(changes([(self.uri(&key), edit)])),
+                ..CodeAction::default()
+            })
+        };
+        the_one.chain(choices).filter_map(action).collect()
     }
 
     /// The text in its canonical layout, as one change of what differs; none where it has mistakes
@@ -117,6 +141,34 @@ impl Workspace {
         let formatted = obverse_syntax::format::format(&document.text).ok()?;
         Some(difference(&document.text, &formatted).into_iter().collect())
     }
+}
+
+/// What is lacking in the workcell, in the file of the program that asks for it.
+fn of_workcell(program: &Program, lacking: &Lacking) -> Option<(String, Diagnostic)> {
+    let names = program.sources();
+    let file = (0..names.len()).find(|file| names.name(*file) == lacking.file)?;
+    if is_of_library(&lacking.file) {
+        return None;
+    }
+    let (text, lines) = (program.text(file), program.lines(file)?);
+    let start = lines.offset_of(text, lacking.line, lacking.column);
+    let end = start.saturating_add(word_length(&text[start as usize..]));
+    let diagnostic = Diagnostic {
+        range: lines.range(text, obverse_syntax::span::Span::new(start, end)),
+        severity: Some(DiagnosticSeverity::Error),
+        code: lacking.code.map(Into::into),
+        source: Some("obverse".to_owned()),
+        message: lacking.message.clone().into(),
+        ..Diagnostic::default()
+    };
+    Some((program.key(file), diagnostic))
+}
+
+/// How many bytes the word, the number or the text in quotes has that something begins with.
+fn word_length(text: &str) -> u32 {
+    let quoted = text.strip_prefix('"').and_then(|rest| rest.find('"')).map(|end| end + 2);
+    let word = || text.find(|c: char| !c.is_alphanumeric() && c != '_').unwrap_or(text.len());
+    u32::try_from(quoted.unwrap_or_else(word)).unwrap_or(u32::MAX)
 }
 
 /// Changes of files, by address.

@@ -3,6 +3,7 @@
 
 use crate::uri::join;
 use crate::workspace::Document;
+use obverse_bytecode::Module;
 use obverse_compiler::Loader;
 use std::collections::BTreeMap;
 
@@ -14,6 +15,27 @@ pub trait Disk {
     /// The names and texts of the source files in a folder; no more of them than are read without
     /// being noticed.
     fn sources(&self, folder: &str) -> Vec<(String, String)>;
+
+    /// What a program asks of its workcell that this has not, by the path of the file that it
+    /// begins in; nothing where workcells are not known.
+    fn lacking(&self, _path: &str, _module: &Module) -> Vec<Lacking> {
+        Vec::new()
+    }
+}
+
+/// What a program asks of its workcell and this has not.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Lacking {
+    /// The file of the program that asks for it, by its name in the module.
+    pub file: String,
+    /// The line, from 1.
+    pub line: usize,
+    /// The letter of the line, from 1.
+    pub column: usize,
+    /// The code that explains it, if one does.
+    pub code: Option<&'static str>,
+    /// What is lacking, and what there is.
+    pub message: String,
 }
 
 /// No files at all: what is open is all there is.

@@ -27,7 +27,7 @@ mod tokens;
 mod uri;
 mod workspace;
 
-pub use disk::{Disk, NoDisk};
+pub use disk::{Disk, Lacking, NoDisk};
 pub use rename::Refusal;
 pub use server::{Ended, serve};
 pub use tokens::legend;

@@ -54,6 +54,15 @@ impl Lines {
         self.starts.partition_point(|&start| start <= offset).saturating_sub(1)
     }
 
+    /// The offset of a letter of a line, both from 1; beyond the end it is the end.
+    pub(crate) fn offset_of(&self, text: &str, line: usize, column: usize) -> u32 {
+        let start = line.checked_sub(1).and_then(|line| self.starts.get(line)).copied();
+        let start = start.unwrap_or(offset(text.len()));
+        let rest = &text[start as usize..];
+        let before = rest.chars().take(column.saturating_sub(1)).map(char::len_utf8).sum();
+        start + offset(before)
+    }
+
     /// The place of a span.
     pub(crate) fn range(&self, text: &str, span: Span) -> Range {
         Range::new(self.position(text, span.start), self.position(text, span.end))

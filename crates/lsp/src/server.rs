@@ -33,6 +33,7 @@ pub fn serve(connection: &Connection, disk: Box<dyn Disk>) -> Ended {
         queue: VecDeque::new(),
         stage: Stage::Uninitialized,
         is_stale: false,
+        can_watch: false,
         published: BTreeSet::new(),
     };
     server.run()
@@ -57,6 +58,8 @@ struct Server<'c> {
     stage: Stage,
     /// Whether texts have changed since diagnostics were published.
     is_stale: bool,
+    /// Whether the editor can be asked to tell of files that change on the disk.
+    can_watch: bool,
     /// What diagnostics were published of, and may have to be taken back.
     published: BTreeSet<String>,
 }
@@ -120,6 +123,9 @@ impl Server<'_> {
         match (self.stage, request.method.as_str()) {
             (Stage::Uninitialized, "initialize") => {
                 self.stage = Stage::Serving;
+                self.can_watch = answer::can_watch(&request.params);
+                let can_have_none = answer::can_have_none_active(&request.params);
+                self.workspace.can_have_none_active = can_have_none;
                 self.send(Response::new_ok(request.id, answer::initialized()));
             }
             (Stage::Uninitialized, _) => {
@@ -180,10 +186,12 @@ impl Server<'_> {
         }
     }
 
-    /// Ask the editor to tell of files that change on the disk. One that cannot says so, and files
-    /// are then read again when something is opened, saved or closed.
+    /// Ask the editor to tell of files that change on the disk. With one that cannot, files are
+    /// read again when something is opened, saved or closed.
     fn watch_files(&mut self) {
-        self.send(answer::watching());
+        if self.can_watch {
+            self.send(answer::watching());
+        }
     }
 
     /// Publish what is wrong, if that may have changed.

@@ -7,8 +7,8 @@ use crate::hover::unit_of;
 use crate::program::{Program, is_of_library};
 use crate::workspace::{InProgram, Workspace};
 use lsp_types::{
-    Documentation, MarkupContent, MarkupKind, ParameterInformation, Position, SignatureHelp,
-    SignatureInformation, Uri,
+    ActiveParameter, Documentation, MarkupContent, MarkupKind, ParameterInformation, Position,
+    SignatureHelp, SignatureInformation, Uri,
 };
 use obverse_compiler::symbols;
 use obverse_syntax::ast::{Item, Parameter, Sequence};
@@ -28,7 +28,7 @@ impl Workspace {
             Some(call) => call.shown(&file),
             None => forms::command(&before).map(Shown::from),
         };
-        shown.map(Shown::help)
+        shown.map(|shown| shown.help(self.can_have_none_active))
     }
 }
 
@@ -65,7 +65,8 @@ impl Shown {
         shown
     }
 
-    fn help(self) -> SignatureHelp {
+    fn help(self, can_have_none_active: bool) -> SignatureHelp {
+        let is_none_active = self.active >= self.parameters.len();
         let short = |number: usize| u32::try_from(number).unwrap_or(u32::MAX);
         let parameter = |(range, says): (Range<usize>, String)| {
             // All that is in a label is a single unit of the protocol.
@@ -81,7 +82,11 @@ impl Shown {
         SignatureHelp {
             signatures: vec![signature],
             active_signature: Some(0),
-            active_parameter: Some(short(self.active).into()),
+            // To a client that knows of no other way, one that is not there says the same.
+            active_parameter: Some(match is_none_active && can_have_none_active {
+                true => ActiveParameter::Null,
+                false => short(self.active).into(),
+            }),
         }
     }
 }

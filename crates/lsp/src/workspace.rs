@@ -1,7 +1,7 @@
 //! What is open in an editor, and the programs that it belongs to. Data in, data out: what is asked
 //! of a program stands in modules of their own, and how editors talk in `server`.
 
-use crate::disk::{Disk, NoDisk, OpenFirst};
+use crate::disk::{Disk, Lacking, NoDisk, OpenFirst};
 use crate::program::Program;
 use crate::uri::{LIBRARY_SCHEME, path_of, split, uri_of};
 use lsp_types::{TextDocumentContentChangeEvent, Uri};
@@ -36,6 +36,8 @@ pub struct Workspace {
     newest: HashMap<String, Rc<Program>>,
     /// The files that programs begin in which a file is part of.
     roots: HashMap<String, Vec<String>>,
+    /// Whether the editor can be told that no parameter is at hand.
+    pub(crate) can_have_none_active: bool,
 }
 
 /// A file of a program.
@@ -56,6 +58,7 @@ impl Workspace {
             programs: HashMap::new(),
             newest: HashMap::new(),
             roots: HashMap::new(),
+            can_have_none_active: false,
         }
     }
 
@@ -160,6 +163,15 @@ impl Workspace {
         }
         self.programs.insert(root.to_owned(), Rc::clone(&program));
         Some(program)
+    }
+
+    /// What a program asks of its workcell that this has not; of a program that is in no folder, or
+    /// does not compile, nothing is known.
+    pub(crate) fn lacking(&self, program: &Program) -> Vec<Lacking> {
+        let root = program.key(0);
+        let is_file = path_of(&self.uri(&root)).is_some();
+        let module = program.compiled.module.as_ref().filter(|_| is_file);
+        module.map_or_else(Vec::new, |module| self.disk.lacking(&root, module))
     }
 
     /// The program that begins in a file, with other texts in place of those that are open.

@@ -48,6 +48,8 @@ pub struct Diagnostic {
     pub help: Option<String>,
     /// The change of the text that does it, where there is one plain one.
     pub suggestion: Option<Suggestion>,
+    /// The changes of which each does it, where a person must choose between several.
+    pub choices: Vec<Suggestion>,
 }
 
 impl Diagnostic {
@@ -67,6 +69,7 @@ impl Diagnostic {
             notes: Vec::new(),
             help: None,
             suggestion: None,
+            choices: Vec::new(),
         }
     }
 
@@ -107,6 +110,18 @@ impl Diagnostic {
     #[must_use]
     pub fn replacing(mut self, span: Span, text: impl Into<String>) -> Self {
         self.suggestion = Some(Suggestion { span, text: text.into() });
+        self
+    }
+
+    /// With the texts of which one is to be written in place of a span.
+    #[must_use]
+    pub fn with_choices(
+        mut self,
+        span: Span,
+        texts: impl IntoIterator<Item = impl Into<String>>,
+    ) -> Self {
+        self.choices =
+            texts.into_iter().map(|text| Suggestion { span, text: text.into() }).collect();
         self
     }
 }

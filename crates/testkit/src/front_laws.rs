@@ -29,7 +29,8 @@ pub fn cut_off_anywhere(u: &mut Unstructured<'_>) -> Result<bool> {
         let compiled = compile("cut.obv", cut);
         for diagnostic in &compiled.diagnostics {
             let labels = diagnostic.labels.iter().map(|label| label.span);
-            let changed = diagnostic.suggestion.iter().map(|suggestion| suggestion.span);
+            let changes = diagnostic.suggestion.iter().chain(&diagnostic.choices);
+            let changed = changes.map(|change| change.span);
             for span in labels.chain(changed).chain([diagnostic.primary.span]) {
                 let range = span.start as usize..span.end as usize;
                 assert!(cut.get(range).is_some(), "{diagnostic:?}\n{cut}");

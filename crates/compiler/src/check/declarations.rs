@@ -105,7 +105,9 @@ impl<'s> Checker<'s> {
         let message = format!("each number of {what} is {dimension}, and here is no unit");
         let diagnostic = Diagnostic::error(Code::MissingUnit, vector, message, "without a unit")
             .with_help(format!("write the unit after the bracket: {}", dimension.examples()));
-        self.reports.add(diagnostic);
+        let behind = Span::new(vector.end, vector.end);
+        let units = dimension.units().into_iter().map(|unit| format!(" {unit}"));
+        self.reports.add(diagnostic.with_choices(behind, units));
     }
 
     /// The unit after a bracket, if it can be meant.

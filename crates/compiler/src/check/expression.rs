@@ -128,8 +128,14 @@ impl<'s> Checker<'s> {
         let mut diagnostic = match (needed, found) {
             (ValueType::Real(unit), ValueType::Int | ValueType::NUMBER) if is_literal => {
                 let message = format!("{what} needs {needed}, and this number has no unit");
+                let written = self.with_units(span, unit);
+                let help = match written.len() {
+                    0 => unit.examples().to_owned(),
+                    _ => format!("`{}`", written.join("` or `")),
+                };
                 Diagnostic::error(Code::MissingUnit, span, message, "a number without a unit")
-                    .with_help(format!("write the unit after it: {}", self.with_units(span, unit)))
+                    .with_help(format!("write the unit after it: {help}"))
+                    .with_choices(span, written)
             }
             (ValueType::Real(unit), ValueType::Real(_)) => {
                 let diagnostic =
@@ -159,21 +165,16 @@ impl<'s> Checker<'s> {
         self.reports.add(diagnostic);
     }
 
-    /// A number as it is written, with each unit that it may lack; or the units alone.
-    fn with_units(&self, span: Span, of: Dimension) -> String {
+    /// A number as it is written, with each unit that it may lack; none of one that is long.
+    fn with_units(&self, span: Span, of: Dimension) -> Vec<String> {
         let mut number = self.text(span);
         while let Some(inner) = number.strip_prefix('(').and_then(|rest| rest.strip_suffix(')')) {
             number = inner.trim();
         }
-        let units = of.examples();
         let is_plain = number.len() <= MAX_REPEATED
-            && number.starts_with(|c: char| c.is_ascii_digit() || c == '-')
-            && !units.contains("one");
-        if !is_plain {
-            return units.to_owned();
-        }
-        let written = units.split(" or ").map(|unit| format!("`{number} {unit}`"));
-        written.collect::<Vec<_>>().join(" or ")
+            && number.starts_with(|c: char| c.is_ascii_digit() || c == '-');
+        let units = of.units().into_iter().filter(|_| is_plain);
+        units.map(|unit| format!("{number} {unit}")).collect()
     }
 
     /// An expression with its type.

@@ -68,9 +68,22 @@ pub(super) fn initialized() -> InitializeResult {
     InitializeResult::new(capabilities, Some(ServerInfo { name: "obverse".to_owned(), version }))
 }
 
+/// Whether an editor says when it is initialized that it can be asked to tell of files.
+pub(super) fn can_watch(params: &Value) -> bool {
+    let of_workspace = &params["capabilities"]["workspace"];
+    of_workspace["didChangeWatchedFiles"]["dynamicRegistration"] == true
+}
+
+/// Whether an editor says when it is initialized that it can be told of no parameter at hand.
+pub(super) fn can_have_none_active(params: &Value) -> bool {
+    let of_help = &params["capabilities"]["textDocument"]["signatureHelp"];
+    let of_signature = &of_help["signatureInformation"];
+    [of_help, of_signature].iter().any(|known| known["noActiveParameterSupport"] == true)
+}
+
 /// The request to be told of files that change on the disk.
 pub(super) fn watching() -> Request {
-    let watchers = json!([{ "globPattern": "**/*.obv" }]);
+    let watchers = json!([{ "globPattern": "**/*.{obv,toml}" }]);
     let registration = json!({
         "id": "files",
         "method": "workspace/didChangeWatchedFiles",

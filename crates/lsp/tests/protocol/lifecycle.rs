@@ -1,8 +1,8 @@
 //! How a session begins and ends, and what is no question: cancelled, unknown, out of order.
 
 use crate::support::{Editor, Texts, uri};
-use lsp_server::{Message, Response};
-use obverse_lsp::Ended;
+use lsp_server::{Connection, Message, Notification, Request, Response};
+use obverse_lsp::{Ended, NoDisk, serve};
 use serde_json::{Value, json};
 
 #[test]
@@ -73,4 +73,28 @@ fn a_cancelled_request_is_answered_as_such_or_as_if_it_were_not() {
     }
     editor.tell("$/cancelRequest", json!({ "id": "unknown" }));
     assert_eq!(editor.leave(), Ended::Properly);
+}
+
+#[test]
+fn only_an_editor_that_can_is_asked_to_tell_of_files() {
+    let registration = |capabilities: Value| {
+        let (server, editor) = Connection::memory();
+        let server = std::thread::spawn(move || serve(&server, Box::new(NoDisk)));
+        let send = |message: Message| editor.sender.send(message).expect("the server is there");
+        let params = json!({ "capabilities": capabilities });
+        send(Request::new(1.into(), "initialize".to_owned(), params).into());
+        send(Notification::new("initialized".to_owned(), json!({})).into());
+        send(Request::new(2.into(), "shutdown".to_owned(), Value::Null).into());
+        send(Notification::new("exit".to_owned(), Value::Null).into());
+        assert_eq!(server.join().expect("no panic"), Ended::Properly);
+        let asked = |message: Message| match message {
+            Message::Request(request) => Some(request.params["registrations"][0].clone()),
+            _ => None,
+        };
+        editor.receiver.try_iter().find_map(asked)
+    };
+    assert_eq!(registration(json!({})), None);
+    let can = json!({ "workspace": { "didChangeWatchedFiles": { "dynamicRegistration": true } } });
+    let asked = registration(can).expect("it is asked");
+    assert_eq!(asked["registerOptions"]["watchers"][0]["globPattern"], "**/*.{obv,toml}");
 }

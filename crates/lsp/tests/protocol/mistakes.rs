@@ -125,3 +125,26 @@ fn a_text_is_formatted_by_the_least_change() {
     editor.change("main.obv", json!([{ "text": "sequence main {" }]));
     assert_eq!(editor.ask("textDocument/formatting", params), Ok(Value::Null));
 }
+
+#[test]
+fn where_a_unit_is_to_be_chosen_each_is_a_quick_fix() {
+    let (text, places) = marked("sequence main {\n  wait «5»\n  move «80» up in base\n}\n");
+    let mut editor = Editor::new();
+    editor.open("main.obv", &text);
+    for (place, expected) in
+        [(0, ["wait 5 s\n", "wait 5 ms\n"]), (1, ["move 80 mm up", "move 80 m up"])]
+    {
+        let params = json!({
+            "textDocument": { "uri": uri("main.obv") },
+            "range": places[place],
+            "context": { "diagnostics": [] },
+        });
+        let actions = editor.ask("textDocument/codeAction", params).expect("a list");
+        assert_eq!(actions.as_array().map(Vec::len), Some(2), "{actions}");
+        for (action, expected) in actions.as_array().into_iter().flatten().zip(expected) {
+            let mended = edited(&text, &action["edit"]["changes"][uri("main.obv")]);
+            assert!(mended.contains(expected), "{mended}");
+            assert_eq!(action["isPreferred"], json!(null), "a person chooses");
+        }
+    }
+}

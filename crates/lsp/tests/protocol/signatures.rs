@@ -1,6 +1,6 @@
 //! What belongs where one writes: parameters of calls, and forms of commands.
 
-use crate::support::{Editor, marked, opened, uri};
+use crate::support::{Editor, Texts, marked, opened, uri};
 use serde_json::{Value, json};
 
 const HEAD: &str = "\
@@ -162,4 +162,21 @@ fn it_is_promised_and_asked_for_by_brackets_and_blanks() {
     let params = json!({ "textDocument": document, "position": position, "context": context });
     let answer = editor.ask("textDocument/signatureHelp", params).expect("an answer");
     assert_eq!(answer["signatures"][0]["label"], "wait time");
+}
+
+#[test]
+fn an_editor_that_knows_how_is_told_that_no_parameter_is_at_hand() {
+    let can = json!({ "signatureHelp": { "noActiveParameterSupport": true } });
+    for (can, expected) in [(can, json!(null)), (json!({}), json!(3))] {
+        let (text, places) = marked(&format!("{HEAD}  call push(nothing: «»"));
+        let mut editor = Editor::uninitialized(Texts::default());
+        let params = json!({ "capabilities": { "textDocument": can } });
+        editor.ask("initialize", params).expect("it is initialized");
+        editor.tell("initialized", json!({}));
+        editor.open("main.obv", &text);
+        let place = places[0]["start"].clone();
+        let answer = editor.at("signatureHelp", "main.obv", place).expect("an answer");
+        assert!(answer.as_object().is_some_and(|it| it.contains_key("activeParameter")));
+        assert_eq!(answer["activeParameter"], expected, "{answer}");
+    }
 }

@@ -80,7 +80,9 @@ impl Editor {
     /// The same with files.
     pub(crate) fn with_disk(disk: Texts) -> Self {
         let mut editor = Self::uninitialized(disk);
-        editor.ask("initialize", json!({ "capabilities": {} })).expect("it is initialized");
+        let can = json!({ "didChangeWatchedFiles": { "dynamicRegistration": true } });
+        let can = json!({ "capabilities": { "workspace": can } });
+        editor.ask("initialize", can).expect("it is initialized");
         editor.tell("initialized", json!({}));
         editor
     }

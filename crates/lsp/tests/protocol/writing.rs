@@ -56,7 +56,11 @@ fn values_are_offered_where_one_can_stand() {
 
 #[test]
 fn units_follow_a_number() {
-    let after = at("wait 3 «»");
+    assert_eq!(at("wait 3 «»")[..3], ["ms", "s", "and"]);
+    assert_eq!(at("wait 3 «»\n}")[..3], ["ms", "s", "and"]);
+    assert_eq!(at("move 3 «»up\n}")[..2], ["m", "mm"]);
+    // Nothing says what it measures.
+    let after = at("var many = 3 «»");
     assert!(after.starts_with(&["N".to_owned(), "cm".to_owned()]), "{after:?}");
     assert!(at("wait 3m«»").iter().any(|offered| offered == "mm/s"));
     assert!(!at("wait 3 mm\n  «»").iter().any(|offered| offered == "mm"));
