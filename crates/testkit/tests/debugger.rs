@@ -270,8 +270,8 @@ fn the_counter_of_a_loop_is_there_within_it_by_its_name() {
 
 #[test]
 fn variables_are_of_their_units_and_take_no_other() {
-    let source = "action go(d: length, n: number) {\n  var v = d / 2 s\n  wait d / v\n  wait n * 1 s\n}\n\
-                  sequence main { call go(20 mm, 0.5) }\n";
+    let source = "action go(d: length, n: number) {\n  var v = d / 2 s\n  wait d / v\n  \
+                  wait n * 1 s\n}\nsequence main { call go(20 mm, 0.5) }\n";
     let compiled = compile("p.obv", source);
     let program = verify(compiled.module.expect("it compiles")).expect("it verifies");
     let mut session = session(&program);

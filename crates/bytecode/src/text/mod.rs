@@ -25,8 +25,8 @@
 //!     .then action | next_action | sequence | program | stop
 //! .checkpoint "NAME"
 //! .reason "TEXT"
-//! .global "NAME" TYPE [of M RAD S N]     what a real measures: exponents of metres, radians, seconds
-//!                                        and newtons
+//! .global "NAME" TYPE [of M RAD S N]     what a real measures: exponents of metres, radians,
+//!                                        seconds and newtons
 //! .cleanup FUNCTION                      what runs at the end of the program
 //! .function "NAME" KIND                  what follows is of this function, to the next one
 //!     .parameter "NAME" TYPE [of ..]     the parameters come before the other locals
