@@ -1,6 +1,7 @@
 //! One program as it stands: its files, what the compiler says of it, where its names are. It knows
 //! what an offset of the compiler is in an editor.
 
+use crate::headers::mended;
 use crate::position::Lines;
 use crate::steps::Steps;
 use crate::uri::{join, split};
@@ -36,6 +37,11 @@ impl Program {
     pub(crate) fn new(key: &str, text: &str, loader: &mut dyn Loader) -> Self {
         let (folder, name) = split(key);
         let (compiled, symbols) = analyse(name, text, loader);
+        let whole = mended(text).filter(|_| compiled.module.is_none());
+        let symbols = match whole.map(|whole| analyse(name, &whole, loader).1) {
+            Some(more) if more.symbols.len() > symbols.symbols.len() => more,
+            _ => symbols,
+        };
         let sources = &compiled.sources;
         let lines = (0..sources.len()).map(|file| Lines::new(sources.text(file))).collect();
         Self {

@@ -1,6 +1,6 @@
 //! What is offered while one writes.
 
-use crate::support::offered;
+use crate::support::{hover, offered, opened};
 
 const HEAD: &str = "\
 output lamp = 3
@@ -103,4 +103,34 @@ fn a_mistake_elsewhere_takes_nothing_away() {
 fn what_is_declared_further_down_is_not_seen_yet() {
     let before = at("wait «»\n  var later = 3 s\n}");
     assert!(!before.iter().any(|offered| offered == "later"), "{before:?}");
+}
+
+#[test]
+fn what_is_below_a_head_that_is_being_written_is_known() {
+    for head in [
+        "action two(x: int) {",
+        "action two(x: int, ) {",
+        "action two(x: int, y) {",
+        "action two(x: int, y: ) {",
+        "action two(x: int {",
+        "action two(x: int)",
+    ] {
+        let source = format!(
+            "var g = 1\nsequence main {{\n  call two(1)\n  g += 1\n}}\n{head}\n  wait 0.1 s\n  g += \
+             «»\n}}\nsequence last {{ g += 2 }}\n"
+        );
+        let known = offered(&source);
+        assert!(known.iter().any(|name| name == "x"), "{head}: {known:?}");
+        let source = source.replace("«»", "«x»");
+        assert!(hover(&source).contains("int"), "{head}: {}", hover(&source));
+        let (mut editor, _) = opened(&source);
+        let outline = editor.of("documentSymbol", "main.obv").to_string();
+        for name in ["g", "main", "two", "last"] {
+            assert!(outline.contains(&format!("\"name\":\"{name}\"")), "{head}: {outline}");
+        }
+    }
+    let bare = "var g = 1\nsequence f\n  g += 1\n  g += 2\n}\n";
+    let (mut editor, _) = opened(bare);
+    let outline = editor.of("documentSymbol", "main.obv").to_string();
+    assert!(outline.contains("\"name\":\"f\""), "{outline}");
 }
