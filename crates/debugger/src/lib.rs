@@ -9,10 +9,9 @@
 //! [`taped`], a run that is written to one as it goes; [`recorder`] and [`replay`], the workcells
 //! that write and read it; [`mod@drive`], the clock; [`timeline`], the copies; [`rewound`], a
 //! moment shown; [`run`], one line of history, and how a recovery drives it (`hops`) and would
-//! know it (`retrace`); [`notes`], what it did; [`subject`] and
-//! [`condition`], what can be asked, and [`unit`], what it measures; `writers`, what can change
-//! that; [`breakpoint`]; [`place`];
-//! [`session`], what fronts use.
+//! know it (`retrace`); [`notes`], what it did; [`subject`] and [`condition`], what can be asked,
+//! and [`unit`](mod@unit), what it measures; `writers`, what can change that; [`breakpoint`];
+//! [`place`]; [`session`], what fronts use.
 //! It knows modules and machines, and neither source languages nor how anything is shown.
 
 pub mod breakpoint;
