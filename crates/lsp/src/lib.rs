@@ -4,8 +4,8 @@
 //! speaks the Language Server Protocol over a connection. Read `workspace` and `program`, then
 //! `steps` (what is known of going back), then a module a question: `diagnostics`, `hover` with
 //! `backwards`, `navigate`, `rename`, `completion` and `signature` with `forms` (both look at what
-//! is written `before`), `tokens`, `hints`; `headers` mends what is half written. Files are read by whoever gives a [`Disk`]. Nothing
-//! here runs a program, prints, or knows a machine.
+//! is written `before`), `tokens`, `hints`; `headers` mends what is half written. Files are read
+//! by whoever gives a [`Disk`]. Nothing here runs a program, prints, or knows a machine.
 
 mod backwards;
 mod before;

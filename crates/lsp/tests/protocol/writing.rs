@@ -116,8 +116,8 @@ fn what_is_below_a_head_that_is_being_written_is_known() {
         "action two(x: int)",
     ] {
         let source = format!(
-            "var g = 1\nsequence main {{\n  call two(1)\n  g += 1\n}}\n{head}\n  wait 0.1 s\n  g += \
-             «»\n}}\nsequence last {{ g += 2 }}\n"
+            "var g = 1\nsequence main {{\n  call two(1)\n  g += 1\n}}\n{head}\n  wait 0.1 s\n  \
+             g += «»\n}}\nsequence last {{ g += 2 }}\n"
         );
         let known = offered(&source);
         assert!(known.iter().any(|name| name == "x"), "{head}: {known:?}");
