@@ -191,16 +191,11 @@ pub(super) fn history(front: &mut Front<'_>, rest: &str) -> Done {
         Ok(count @ 1..=MAX_HISTORY) => count,
         _ => return Err(format!("say how many, from 1 to {MAX_HISTORY}")),
     };
-    let actions = front.session.history();
-    let now = front.session.moment();
-    let behind = actions.partition_point(|action| action.moment < now);
-    // What came later is shown too: half as much of it.
-    let last = actions.len().min(behind + count / 2);
-    let first = behind.saturating_sub(count);
-    let shown = &actions[first..last];
+    let around = front.session.history_around(count);
+    let shown = &around.actions;
     let mut lines: Vec<String> = shown.iter().map(|action| words(front, action)).collect();
-    if behind < actions.len() {
-        lines.insert(behind - first, format!("{now:>7} > here"));
+    if let Some(here) = around.here {
+        lines.insert(here, format!("{:>7} > here", front.session.moment()));
     }
     if lines.is_empty() {
         lines.push("nothing was done".to_owned());

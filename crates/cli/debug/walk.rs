@@ -4,7 +4,7 @@ use super::{Answer, Done, Front, errors, values};
 use crate::report;
 use obverse_bytecode::FunctionKind;
 use obverse_debugger::recording::Moment;
-use obverse_debugger::{Change, Declined, Grain, Halt, Mode, Walk};
+use obverse_debugger::{Change, Grain, Halt, Mode, Walk};
 use obverse_recovery::drive::ending;
 use obverse_vm::{Direction, Stop};
 use serde_json::{Value, json};
@@ -39,7 +39,7 @@ pub(super) fn go(front: &mut Front<'_>, rest: &str, direction: Direction, walk: 
         if !goes_on || made + 1 == count {
             break;
         }
-        if front.session.is_interrupted() {
+        if front.session.take_interrupt() {
             halt = Halt::Interrupted;
             break;
         }
@@ -177,7 +177,7 @@ impl Front<'_> {
             if !is_start || halt != Halt::Done || !self.is_in_start() {
                 return halt;
             }
-            if self.session.is_interrupted() {
+            if self.session.take_interrupt() {
                 return Halt::Interrupted;
             }
         }
@@ -197,17 +197,12 @@ impl Front<'_> {
     }
 }
 
-/// Why there was no jump, with words of its own where there was nothing to jump to.
-fn unless_there(why: Declined, none: impl FnOnce() -> String) -> String {
-    if why == Declined::NotBefore { none() } else { why.to_string() }
-}
-
 pub(super) fn goto(front: &mut Front<'_>, rest: &str) -> Done {
     let session = &mut front.session;
     let said = |why: obverse_debugger::Declined| why.to_string();
     let before_error = |session: &mut obverse_debugger::Session<'_, _>| {
         let none = || "no error was raised before this moment".to_owned();
-        session.go_to_last_error().map_err(|why| unless_there(why, none))
+        session.go_to_last_error().map_err(|why| why.words_or(none))
     };
     match rest {
         "" => return Err("say where to: a moment, start, end, error, or a name".to_owned()),
@@ -238,7 +233,7 @@ fn to_checkpoint(front: &mut Front<'_>, name: &str) -> Done {
     let checkpoint = obverse_isa::CheckpointId(index as u16);
     let moment = front.session.go_to_checkpoint(checkpoint);
     let none = || format!("checkpoint {name} was not passed before this moment");
-    moment.map_err(|why| unless_there(why, none))?;
+    moment.map_err(|why| why.words_or(none))?;
     Ok(front.jumped(Vec::new()))
 }
 
@@ -247,7 +242,7 @@ pub(super) fn last(front: &mut Front<'_>, rest: &str) -> Done {
     let change = front
         .session
         .go_to_last_change(&expression)
-        .map_err(|why| unless_there(why, || format!("{rest} did not change before this moment")))?;
+        .map_err(|why| why.words_or(|| format!("{rest} did not change before this moment")))?;
     let Change { moment, before, after } = change;
     let line = format!("{rest} was {before} until here, and became {after}");
     let mut data = values::data([("before", &before), ("after", &after)]);

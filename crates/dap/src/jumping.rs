@@ -36,14 +36,9 @@ impl Debuggee<'_, '_, '_> {
         };
         let gone = self.session.go_to_checkpoint(CheckpointId(index as u16));
         let none = || format!("checkpoint {name} was not passed before this moment");
-        gone.map_err(|why| unless_there(why, none))?;
+        gone.map_err(|why| why.words_or(none))?;
         Ok(self.moved())
     }
-}
-
-/// Why there was no jump, with words of its own where there was nothing to jump to.
-fn unless_there(why: Declined, none: impl FnOnce() -> String) -> String {
-    if why == Declined::NotBefore { none() } else { why.to_string() }
 }
 
 pub(crate) fn goto(it: &mut Debuggee<'_, '_, '_>, typed: &Typed<'_>) -> Result {
@@ -81,7 +76,7 @@ pub(crate) fn last(it: &mut Debuggee<'_, '_, '_>, typed: &Typed<'_>) -> Result {
         }
     };
     let none = || format!("{rest} did not change before this moment");
-    let changed = change.map_err(|why| unless_there(why, none))?;
+    let changed = change.map_err(|why| why.words_or(none))?;
     let Change { before, after, .. } = changed;
     let here = it.here();
     Ok(Done::Moved(format!("{here}: {rest} was {before} until here, and became {after}")))

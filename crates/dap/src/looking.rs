@@ -44,21 +44,16 @@ pub(crate) fn history(it: &mut Debuggee<'_, '_, '_>, typed: &Typed<'_>) -> Resul
         Ok(count @ 1..=MAX_HISTORY) => count,
         _ => return Err(format!("say how many, from 1 to {MAX_HISTORY}")),
     };
-    let actions = it.session.history();
-    let now = it.session.moment();
-    let behind = actions.partition_point(|action| action.moment < now);
-    // What came later is shown too: half as much of it.
-    let last = actions.len().min(behind + count / 2);
-    let first = behind.saturating_sub(count);
+    let around = it.session.history_around(count);
     let module = it.session.module();
     let line = |action: &Action| {
         let way = if action.direction == Direction::Reverse { "<-" } else { "->" };
         let place = words::line(module, action.pc);
         format!("{:>8} {way} {place}: {}", action.moment.to_string(), action.text)
     };
-    let mut shown: Vec<String> = actions[first..last].iter().map(line).collect();
-    if behind < actions.len() {
-        shown.insert(behind - first, format!("{:>8} here", now.to_string()));
+    let mut shown: Vec<String> = around.actions.iter().map(line).collect();
+    if let Some(here) = around.here {
+        shown.insert(here, format!("{:>8} here", it.session.moment().to_string()));
     }
     Ok(lines(&shown, "nothing was done"))
 }

@@ -17,7 +17,7 @@ const MAX_DEPTH: usize = 50;
 pub(super) enum Measure {
     /// This, or nothing.
     Of(Unit),
-    /// A variable's: the program has forgotten its unit, and it goes with any.
+    /// Not known, as of a variable of assembly text that leaves it out: it goes with any.
     Unknown,
 }
 

@@ -101,7 +101,7 @@ impl<'p, C: Workcell> Session<'p, C> {
                 }
                 looked.look(shown.moment(), look);
             });
-            if self.is_interrupted() {
+            if self.take_interrupt() {
                 return Err(Declined::Interrupted);
             }
             if is_over(&halted, shown, to, end) {

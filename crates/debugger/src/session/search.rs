@@ -28,7 +28,7 @@ impl<'p, C: Workcell> Session<'p, C> {
             let to = shown.moment().after(PIECE).min(end);
             let halted = shown.walk_on(self.run.recording(), to, stops);
             look(shown);
-            if self.is_interrupted() {
+            if self.take_interrupt() {
                 return Err(Declined::Interrupted);
             }
             if is_over(&halted, shown, to, end) {

@@ -58,6 +58,15 @@ pub struct Action {
     pub end_s: f64,
 }
 
+/// A part of the history, around what is shown.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Around {
+    /// What the robot did, oldest first.
+    pub actions: Vec<Action>,
+    /// Before which of these what is shown stands; none if nothing came later.
+    pub here: Option<usize>,
+}
+
 /// What stops going back from a moment.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Why {
@@ -188,6 +197,18 @@ impl<C: Workcell> Session<'_, C> {
             }
         }
         actions
+    }
+
+    /// So many of these before what is shown, and half as many of what came later.
+    #[must_use]
+    pub fn history_around(&self, count: usize) -> Around {
+        let mut actions = self.history();
+        let now = self.moment();
+        let behind = actions.partition_point(|action| action.moment < now);
+        let here = (behind < actions.len()).then_some(behind.min(count));
+        actions.truncate(behind + count / 2);
+        actions.drain(..behind.saturating_sub(count));
+        Around { actions, here }
     }
 
     /// What stops going back from what is shown.

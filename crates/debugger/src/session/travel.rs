@@ -176,7 +176,7 @@ impl<'p, C: Workcell> Session<'p, C> {
             if self.run.recording().end >= until {
                 return Halt::Limit;
             }
-            if self.is_interrupted() {
+            if self.take_interrupt() {
                 return Halt::Interrupted;
             }
             if direction == Direction::Reverse && self.is_at_change() {
@@ -331,7 +331,7 @@ impl<'p, C: Workcell> Session<'p, C> {
             if origin.is_there(module, view.machine().state()) {
                 break Halt::Done;
             }
-            if self.is_interrupted() {
+            if self.take_interrupt() {
                 break Halt::Interrupted;
             }
         };
